@@ -22,7 +22,7 @@ pub mod swept;
 
 pub use algebraic::{Blob, BlobComponent, Polynomial, Superellipsoid};
 pub use bounded::Bounded;
-pub use csg::{Csg, CsgNode, Operands};
+pub use csg::{Csg, CsgNode, Operands, PacketRanges, PacketTree};
 pub use fractal::{
     HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, Mandelbulb, Menger,
     QuaternionFunction, Terrain, TerrainDetail, TerrainKind, TerrainOptions,

@@ -15,7 +15,7 @@ use kinds::{Any, Closest, Query, Transmitting, Watched};
 use plain::Plain;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator, TraversalStats, Visitor};
-use strahl_geometry::{RayShear, Scratch};
+use strahl_geometry::{PacketTree, RayShear, Scratch};
 use strahl_math::{Interval, Ray};
 use visitor::GroupVisitor;
 
@@ -24,12 +24,12 @@ use visitor::GroupVisitor;
 pub struct Tracer<'s> {
     pub(crate) scene: &'s RenderScene,
     pub(crate) scratch: Scratch,
+    /// What a packet meets of a CSG tree.
+    tree: PacketTree,
     /// The cost of all queries so far.
     pub stats: TraversalStats,
     /// For each light the primitive of the world that blocked it last: likely to block it again.
     occluders: Vec<u32>,
-    /// For each light whether most of the last rays to it that nothing opaque blocked met something that transmits light.
-    pub(crate) crossed: Vec<bool>,
     /// Whether to test that primitive first.
     pub(crate) remembers: bool,
     /// What this thread is doing.
@@ -45,9 +45,9 @@ impl<'s> Tracer<'s> {
         Self {
             scene,
             scratch: Scratch::default(),
+            tree: PacketTree::default(),
             stats: TraversalStats::default(),
             occluders: vec![NONE; scene.lights.len()],
-            crossed: vec![false; scene.lights.len()],
             remembers: true,
             slot: Arc::default(),
         }
@@ -168,7 +168,6 @@ impl<'s> Tracer<'s> {
     /// Forgets what the last rays to lights met, so that the cost of the following queries does not depend on earlier ones.
     pub(crate) fn forget_occluders(&mut self) {
         self.occluders.fill(NONE);
-        self.crossed.fill(false);
     }
 
     /// All hits in `range` on primitives that may transmit light, in no particular order. Hits on a primitive that lies in

@@ -92,7 +92,7 @@ impl Tracer<'_> {
             range,
             ..*shadow_ray
         };
-        self.filtered(&shadow_ray, arena, hits)
+        self.filtered_by(&shadow_ray, arena, hits, |_| {})
     }
 
     /// The part of the way in front of what the light has to cross; `None` where it does not. Objects within the mask or
@@ -103,34 +103,14 @@ impl Tracer<'_> {
         Some(range.with_max(crossing * (1.0 - MASK_SKIN)))
     }
 
-    /// The share of the light that arrives if nothing opaque is in between.
-    pub(crate) fn filtered(
-        &mut self,
-        shadow_ray: &ShadowRay<'_>,
-        arena: &mut MediaArena,
-        hits: &mut Vec<Hit>,
-    ) -> Shadow {
-        self.filtered_by(shadow_ray, arena, hits, |_| {})
-    }
-
-    /// The same for a ray that meets nothing: the media that it is in weaken the light.
-    #[inline]
-    pub(crate) fn unobstructed(
-        &mut self,
-        shadow_ray: &ShadowRay<'_>,
-        arena: &mut MediaArena,
-    ) -> Shadow {
-        self.weakened(shadow_ray, arena, &[], &mut |_| {})
-    }
-
-    /// The same, telling what each hit lets through.
+    /// The share of the light that arrives if nothing opaque is in between, telling what each hit lets through.
     #[inline]
     fn filtered_by(
         &mut self,
         shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
-        mut tell: impl FnMut(Kept<'_>),
+        tell: impl FnMut(Kept<'_>),
     ) -> Shadow {
         if !self.scene.transmits {
             return Shadow::NONE;
@@ -140,13 +120,35 @@ impl Tracer<'_> {
             ray, range, from, ..
         } = shadow_ray;
         self.transmitting_hits(ray, *range, Some(from), hits);
-        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
-        // A grid may report a primitive more than once; an element has one hit at one t.
-        hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
+        self.weakened_by(shadow_ray, arena, hits, tell)
+    }
+
+    /// The share of the light that arrives if these surfaces, which may transmit light, are all that is in between.
+    pub(crate) fn filtered(
+        &mut self,
+        shadow_ray: &ShadowRay<'_>,
+        arena: &mut MediaArena,
+        hits: &mut Vec<Hit>,
+    ) -> Shadow {
+        self.weakened_by(shadow_ray, arena, hits, |_| {})
+    }
+
+    /// The same, telling what each of them lets through.
+    #[inline]
+    fn weakened_by(
+        &mut self,
+        shadow_ray: &ShadowRay<'_>,
+        arena: &mut MediaArena,
+        hits: &mut Vec<Hit>,
+        mut tell: impl FnMut(Kept<'_>),
+    ) -> Shadow {
         if hits.is_empty() {
             // Compiled by itself, without a place for surfaces.
             return self.weakened(shadow_ray, arena, &[], &mut tell);
         }
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
+        // A grid may report a primitive more than once; an element has one hit at one t.
+        hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
         self.weakened(shadow_ray, arena, hits, &mut tell)
     }
 

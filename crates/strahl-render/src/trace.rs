@@ -101,7 +101,10 @@ pub struct TreeTracer<'s> {
     deepest: u32,
     /// The points that a light may shine on.
     arriving: Vec<Arriving>,
+    /// What a shadow ray meets that transmits light, ...
     pub(crate) shadow_hits: Vec<Hit>,
+    /// ... and what each of a packet does.
+    packet_hits: Box<[Vec<Hit>; PACKET]>,
     pub(crate) area_memory: AreaMemory,
     /// The reflection rays of the current hit.
     mirrors: Vec<Mirror>,
@@ -148,6 +151,7 @@ impl<'s> TreeTracer<'s> {
             deepest: 0,
             arriving: Vec::new(),
             shadow_hits: Vec::new(),
+            packet_hits: Box::default(),
             area_memory: AreaMemory::default(),
             mirrors: Vec::new(),
             passages: Vec::new(),

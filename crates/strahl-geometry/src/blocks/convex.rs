@@ -10,7 +10,7 @@ use strahl_math::{DMat3, DVec3, Interval, Ray, Transform};
 use strahl_simd::{Isa, Simd, dispatch};
 
 /// Groups of four rays in a packet.
-const GROUPS: usize = PACKET / LANES;
+pub(crate) const GROUPS: usize = PACKET / LANES;
 
 /// The rays of a packet, coordinate by coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -116,6 +116,27 @@ pub(crate) struct FourRays<I: Isa> {
 }
 
 impl<I: Isa> FourRays<I> {
+    /// Four rays, in the space to which a map leads.
+    #[inline(always)]
+    pub(crate) fn of(isa: I, rays: [&Ray; LANES], map: Option<&Transform>) -> Self {
+        let (mut origin, mut direction) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        for (lane, ray) in rays.into_iter().enumerate() {
+            let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+            for axis in 0..3 {
+                origin[axis][lane] = o[axis];
+                direction[axis][lane] = d[axis];
+            }
+        }
+        let rays = Self {
+            origin: load(isa, &origin),
+            direction: load(isa, &direction),
+        };
+        match map {
+            None => rays,
+            Some(map) => rays.to_object(isa, map),
+        }
+    }
+
     /// One by one.
     #[inline(always)]
     pub(crate) fn rays(&self, isa: I) -> [Ray; LANES] {
@@ -279,6 +300,29 @@ impl PacketSpans {
             }
             _ => span.closest(range, None),
         })
+    }
+
+    /// Appends all hits of a ray on the shape in a range, as [`Primitive::all_hits`](crate::Primitive::all_hits) does; false if only that function
+    /// knows, after some may have been appended.
+    #[inline]
+    pub fn all(
+        &self,
+        shape: &Shape,
+        lane: usize,
+        mut range: Interval,
+        out: &mut Vec<PrimHit>,
+    ) -> bool {
+        loop {
+            match self.closest(shape, lane, range) {
+                None => return false,
+                Some(None) => return true,
+                // The lower end of a range is open.
+                Some(Some(hit)) => {
+                    range.min = hit.t;
+                    out.push(hit);
+                }
+            }
+        }
     }
 }
 

@@ -193,7 +193,10 @@ impl Search<'_> {
         };
         if !quick {
             match self.clip(node, alive) {
-                Some(within) if window.accepts(within.min) => {}
+                // A line begins at minus infinity, where the first window does.
+                Some(within)
+                    if window.accepts(within.min)
+                        || within.min == f64::NEG_INFINITY && window.min == within.min => {}
                 _ => return Ok(false),
             }
         }

@@ -107,6 +107,18 @@ impl Leaf {
         self.is_convex() || matches!(self.shape, Shape::Quadric(_))
     }
 
+    /// Whether lines may cross it more often than twice, and their crossings are listed in little time.
+    pub(super) fn is_listed(&self) -> bool {
+        matches!(
+            self.shape,
+            Shape::Torus(_)
+                | Shape::Polynomial(_)
+                | Shape::Superellipsoid(_)
+                | Shape::Sor(_)
+                | Shape::Lathe(_)
+        )
+    }
+
     /// Whether it is a convex solid that is intersected in a few operations.
     pub(super) fn is_convex(&self) -> bool {
         match &self.shape {

@@ -6,6 +6,7 @@ use super::leaf::Leaf;
 use super::small::{Query, Small};
 use super::states::MOST;
 use super::timeline::TooClose;
+use super::together::PacketTree;
 use crate::primitives::convex::Span;
 use crate::{PrimHit, SurfaceId};
 use arrayvec::ArrayVec;
@@ -15,12 +16,14 @@ use std::ops::ControlFlow;
 type Spans = ArrayVec<(Span, u32), { 2 * MOST }>;
 
 impl Small {
-    /// Visits the visible surfaces along the ray until the visitor stops; only for merges.
+    /// Visits the visible surfaces along the ray until the visitor stops; only for merges. `known` is what a packet knows of the leaves, and the
+    /// place of the ray in it.
     #[inline(always)]
     pub(super) fn visit_merged(
         &self,
         leaves: &[Leaf],
         query: &Query<'_>,
+        known: Option<(&PacketTree, usize)>,
         visit: &mut impl FnMut(PrimHit) -> ControlFlow<()>,
     ) -> Result<(), TooClose> {
         let mut spans = Spans::new();
@@ -31,15 +34,19 @@ impl Small {
                 return Ok(());
             }
             let (number, leaf) = (operand.leaf, &leaves[operand.leaf as usize]);
-            if !operand.quick {
+            let own = query.own(number);
+            let mut stay = None;
+            if let (Some((tree, place)), None) = (known, own) {
+                stay = tree.stay(number, place);
+            } else if !operand.quick {
                 let slabs: &Slabs = slabs.get_or_insert_with(|| Slabs::new(query.ray));
                 if slabs.clip(&leaf.bounds, query.alive).is_none() {
                     continue;
                 }
             }
-            let own = query.own(number);
-            let Some(stay) = leaf.stay(query.ray, own) else {
-                return Err(TooClose);
+            let stay = match stay {
+                Some(stay) => stay,
+                None => leaf.stay(query.ray, own).ok_or(TooClose)?,
             };
             let Some(span) = stay.span else {
                 if stay.outside {

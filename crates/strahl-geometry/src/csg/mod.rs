@@ -11,7 +11,7 @@
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
 //!   matter, `timeline` goes through them. `small` does the same for trees of a few simple leaves,
 //!   with a `table` of their `states`, `one_span` for intersections and `merged` for merges among them; `packet` searches
-//!   those of convex solids for four rays side by side.
+//!   those of convex solids for four rays side by side, `together` larger ones and merges for the rays of a packet.
 
 mod boxes;
 mod compile;
@@ -30,10 +30,12 @@ mod sweep;
 mod table;
 mod tighten;
 mod timeline;
+mod together;
 mod tree;
 mod within;
 
 pub use solid::Csg;
+pub use together::{PacketRanges, PacketTree};
 pub use tree::{CsgNode, Operands};
 
 pub(crate) use evaluate::Workspace;
@@ -46,3 +48,5 @@ mod fuzz_tests;
 mod gem_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod together_tests;

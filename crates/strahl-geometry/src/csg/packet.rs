@@ -7,6 +7,7 @@ use super::leaf::Leaf;
 use super::solid::Csg;
 use super::states::MOST;
 use super::sweep::Fusing;
+use super::together::FourStays;
 use crate::blocks::LANES;
 use crate::blocks::convex::{FourLines, FourRays, FourSpans, select};
 use crate::primitives::convex::Span;
@@ -23,7 +24,7 @@ pub(super) struct Convex {
     /// The number of those that are no complements.
     positive: usize,
     /// Whether a point is in the tree if it is in any of them.
-    any: bool,
+    pub(super) any: bool,
 }
 
 impl Convex {
@@ -183,13 +184,13 @@ impl Csg {
 type Holes = ArrayVec<(FourSpans, u32), MOST>;
 
 /// [`Fusing`] for four rays.
-struct FourFusing<I: Isa> {
+pub(super) struct FourFusing<I: Isa> {
     scale: I::F64x4,
 }
 
 impl<I: Isa> FourFusing<I> {
     #[inline(always)]
-    fn new(isa: I, rays: &FourRays<I>) -> Self {
+    pub(super) fn new(isa: I, rays: &FourRays<I>) -> Self {
         let [x, y, z] = rays.origin;
         let [u, v, w] = rays.direction;
         let far = isa.max(isa.max(isa.abs(x), isa.abs(y)), isa.abs(z));
@@ -202,7 +203,7 @@ impl<I: Isa> FourFusing<I> {
     }
 
     #[inline(always)]
-    fn margin(&self, isa: I, t: I::F64x4) -> I::F64x4 {
+    pub(super) fn margin(&self, isa: I, t: I::F64x4) -> I::F64x4 {
         isa.mul(isa.splat(Fusing::LIMIT), isa.add(isa.abs(t), self.scale))
     }
 
@@ -390,6 +391,15 @@ impl Leaf {
     /// Where four lines that don't start on the shape are inside of it, if that is one span.
     #[inline(always)]
     fn four_spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        let FourStays { mut spans, outside } = self.four_stays(isa, rays);
+        spans.known &= !outside;
+        spans.met &= !outside;
+        spans
+    }
+
+    /// Where four lines that don't start on the shape are inside of it.
+    #[inline(always)]
+    pub(super) fn four_stays<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourStays {
         let placed;
         let rays = match self.map() {
             None => rays,
@@ -398,25 +408,25 @@ impl Leaf {
                 &placed
             }
         };
-        match &self.shape {
+        let spans = match &self.shape {
             Shape::Sphere(solid) => solid.spans(isa, rays),
             Shape::Cuboid(solid) => solid.spans(isa, rays),
             Shape::Cylinder(solid) => solid.frustum().spans(isa, rays),
             Shape::Cone(solid) => solid.frustum().spans(isa, rays),
             Shape::Plane(solid) => solid.spans(isa, rays),
             Shape::Quadric(solid) => {
-                let (mut spans, inside_between) = solid.four_roots(isa, rays);
-                spans.known &= inside_between;
-                spans.met &= inside_between;
-                spans
+                let (spans, inside_between) = solid.four_roots(isa, rays);
+                let outside = !inside_between & 0b1111;
+                return FourStays { spans, outside };
             }
             _ => FourSpans::default(),
-        }
+        };
+        FourStays { spans, outside: 0 }
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::CsgNode;
     use super::*;
     use crate::blocks::{PacketRays, PacketSpans};
@@ -428,7 +438,7 @@ mod tests {
     use strahl_simd::Simd;
 
     /// A convex solid around a place; on a lattice faces coincide.
-    fn operand(random: &mut Random, lattice: bool, tag: u32) -> CsgNode {
+    pub(in super::super) fn operand(random: &mut Random, lattice: bool, tag: u32) -> CsgNode {
         let mut number = |least: f64, most: f64| match lattice {
             false => random.between(least, most),
             true => (random.between(least, most) * 2.0).round() / 2.0,

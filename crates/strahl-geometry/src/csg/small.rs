@@ -14,7 +14,7 @@ use super::sweep::{Fusing, Rule};
 use super::table::Table;
 use super::timeline::TooClose;
 use crate::primitives::convex::Span;
-use crate::{PrimHit, Scratch, Shape, Side, SurfaceId};
+use crate::{PrimHit, Scratch, Side, SurfaceId};
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
 use strahl_math::{Interval, Ray};
@@ -54,7 +54,11 @@ pub(super) struct Query<'a> {
 impl<'a> Query<'a> {
     /// `None` if the range is empty.
     #[inline(always)]
-    fn new(ray: &'a Ray, range: Interval, from: Option<(u32, SurfaceId)>) -> Option<Self> {
+    pub(super) fn new(
+        ray: &'a Ray,
+        range: Interval,
+        from: Option<(u32, SurfaceId)>,
+    ) -> Option<Self> {
         let fusing = Fusing::new(ray);
         let (start, begin) = start_and_begin(range, from.is_some(), &fusing);
         let range = Interval::new(start, range.max);
@@ -137,7 +141,7 @@ impl Small {
             return None;
         }
         let leaf = |n: u32| &leaves[n as usize];
-        if !leaves.iter().all(|l| l.has_stays() || is_listed(&l.shape)) {
+        if !leaves.iter().all(|l| l.has_stays() || l.is_listed()) {
             return None;
         }
         // The complement of everything is no solid with a first surface of its own.
@@ -242,7 +246,7 @@ impl Small {
             return self.visit_one_span(leaves, &mut query, &mut |hit| visit(hit, scratch));
         }
         if self.is_merge {
-            return self.visit_merged(leaves, &query, &mut |hit| visit(hit, scratch));
+            return self.visit_merged(leaves, &query, None, &mut |hit| visit(hit, scratch));
         }
         let far = query.alive.max;
         let mut slabs = None;
@@ -321,18 +325,6 @@ impl Small {
         }
         Ok(())
     }
-}
-
-/// Whether the crossings of a shape that lines cross more often than twice are listed in little time.
-fn is_listed(shape: &Shape) -> bool {
-    matches!(
-        shape,
-        Shape::Torus(_)
-            | Shape::Polynomial(_)
-            | Shape::Superellipsoid(_)
-            | Shape::Sor(_)
-            | Shape::Lathe(_)
-    )
 }
 
 /// The states of a leaf along the relevant part of the ray.

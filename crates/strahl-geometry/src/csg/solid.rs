@@ -50,6 +50,8 @@ pub struct Csg {
     small: Option<Box<Small>>,
     /// Its operands, if it is a small intersection of convex solids and of complements of such, or a small union of convex solids.
     convex: Option<Box<Convex>>,
+    /// Whether the rays of a packet search it together.
+    together: bool,
 }
 
 /// Bounds of leaves (`bounded_by`), in the space of the tree: a ray sees the leaves if it meets all of them ([`crate::Bounded`]).
@@ -140,6 +142,8 @@ impl Csg {
             }
             _ => None,
         };
+        let is_one_span = convex.as_ref().is_some_and(|convex| !convex.any);
+        let together = shallow && !is_one_span && Self::goes_together(&nodes, &leaves);
         let mut numbers = leaves.iter().map(|leaf| leaf.first_element).zip(0..);
         let one_each =
             numbers.all(|(first, index)| first == index) && elements as usize == leaves.len();
@@ -147,6 +151,7 @@ impl Csg {
             one_each,
             small: small.map(Box::new),
             convex: convex.map(Box::new),
+            together,
             nodes,
             operands,
             leaves,
@@ -206,6 +211,12 @@ impl Csg {
         self.leaves.get(leaf).map(|leaf| &leaf.shape)
     }
 
+    /// Whether the rays of a packet search it faster together, with a [`PacketTree`](super::PacketTree).
+    #[inline]
+    pub fn goes_in_packets(&self) -> bool {
+        self.together
+    }
+
     /// Whether it is an operation that is not nested too deep for recursion.
     pub(super) fn is_shallow(&self) -> bool {
         self.shallow
@@ -222,7 +233,12 @@ impl Csg {
         self.convex.as_deref()
     }
 
-    #[cfg(test)]
+    /// The tree as a table, if it is a small merge of leaves that lines cross at most twice.
+    #[inline]
+    pub(super) fn small_merge(&self) -> Option<&Small> {
+        self.small.as_deref().filter(|small| small.is_merge)
+    }
+
     pub(super) fn all_leaves(&self) -> &[Leaf] {
         &self.leaves
     }

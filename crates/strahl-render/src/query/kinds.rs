@@ -108,38 +108,26 @@ impl Query for Watched<'_> {
     }
 }
 
-/// Finds any opaque surface, or any surface that may transmit light.
+/// Finds any opaque surface.
 #[derive(Clone, Copy)]
 pub(super) struct Any {
-    /// [`Prim::STOPS`] or [`Prim::TRANSMITS`].
-    flag: u8,
     /// An element of the primitive found.
     pub(super) found: Option<u64>,
 }
 
 impl Any {
-    pub(super) const OPAQUE: Self = Self {
-        flag: Prim::STOPS,
-        found: None,
-    };
-    pub(super) const TRANSMITTING: Self = Self {
-        flag: Prim::TRANSMITS,
-        found: None,
-    };
+    pub(super) const OPAQUE: Self = Self { found: None };
 }
 
 impl Query for Any {
     const ALL: bool = false;
 
     fn wants(&self, flags: u8) -> bool {
-        flags & self.flag != 0
+        flags & Prim::STOPS != 0
     }
 
     fn part<'g>(&self, group: &'g RenderGroup) -> Option<&'g Part> {
-        match self.flag {
-            Prim::STOPS => group.stopping.as_deref(),
-            _ => group.transmitting.as_deref(),
-        }
+        group.stopping.as_deref()
     }
 
     const ANY: bool = true;
@@ -150,7 +138,7 @@ impl Query for Any {
     }
 
     fn wants_hit(&self, transmits: bool) -> bool {
-        transmits == (self.flag == Prim::TRANSMITS)
+        !transmits
     }
 }
 

@@ -4,7 +4,7 @@
 mod instance;
 
 use super::block::{Block, BlockOfLeaf, Fetched, PacketCulls};
-use super::kinds::{Any, Closest, Query};
+use super::kinds::{Any, Closest, Query, Transmitting};
 use super::shapes::PlainShape;
 use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::activity::{Phase, Slot};
@@ -21,7 +21,9 @@ use strahl_accel::{
 use strahl_geometry::blocks::{
     Hits, PacketLines, PacketRays, PacketShears, PacketSpans, SphereBlock, TriangleBlock,
 };
-use strahl_geometry::{RayShear, Scratch, Shape, SurfaceId};
+use strahl_geometry::{
+    Csg, PacketRanges, PacketTree, PrimHit, Primitive, RayShear, Scratch, Shape, SurfaceId,
+};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
@@ -97,8 +99,14 @@ impl Tracer<'_> {
         range: Interval,
         from: &[Option<&Origin>; PACKET],
     ) -> u32 {
-        let t_max = common_end(rays, range);
-        self.any(rays, range.min, t_max, from, Any::OPAQUE)
+        let asked = Asked {
+            rays,
+            min: range.min,
+            from,
+            class: RayClass::Shadow,
+            first: NONE,
+        };
+        self.search_opaque(&asked, common_end(rays, range)).0
     }
 
     /// [`Tracer::occluded`] for several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
@@ -117,30 +125,20 @@ impl Tracer<'_> {
             class: RayClass::Shadow,
             first: self.occluders[light],
         };
-        let (found, last) = self.search_any(&asked, t_max, Any::OPAQUE);
+        let (found, last) = self.search_opaque(&asked, t_max);
         self.remember(light, last);
         found
     }
 
-    /// The rays that meet surfaces which may transmit light, as bits; each has a range from `min` to the `t_max` of its lane.
-    pub(crate) fn any_transmitting(
+    /// [`Tracer::transmitting_hits`] for several rays; each has a range from `min` to the `t_max` of its lane, and its own list.
+    pub(crate) fn all_transmitting_hits(
         &mut self,
         rays: &[Ray],
         min: f64,
         t_max: [f64; PACKET],
         from: &[Option<&Origin>; PACKET],
-    ) -> u32 {
-        self.any(rays, min, t_max, from, Any::TRANSMITTING)
-    }
-
-    fn any(
-        &mut self,
-        rays: &[Ray],
-        min: f64,
-        t_max: [f64; PACKET],
-        from: &[Option<&Origin>; PACKET],
-        any: Any,
-    ) -> u32 {
+        hits: &mut [Vec<Hit>; PACKET],
+    ) {
         let asked = Asked {
             rays,
             min,
@@ -148,17 +146,13 @@ impl Tracer<'_> {
             class: RayClass::Shadow,
             first: NONE,
         };
-        self.search_any(&asked, t_max, any).0
+        let mut queries = hits.each_mut().map(|hits| Transmitting { hits });
+        self.search_packet(&asked, t_max, &mut queries);
     }
 
-    /// The rays that find something, as bits, and what the last of them has found.
-    fn search_any(
-        &mut self,
-        asked: &Asked<'_>,
-        t_max: [f64; PACKET],
-        any: Any,
-    ) -> (u32, Option<u64>) {
-        let mut queries = [any; PACKET];
+    /// The rays that meet something opaque, as bits, and what the last of them has found.
+    fn search_opaque(&mut self, asked: &Asked<'_>, t_max: [f64; PACKET]) -> (u32, Option<u64>) {
+        let mut queries = [Any::OPAQUE; PACKET];
         self.search_packet(asked, t_max, &mut queries);
         let (mut found, mut last) = (0, None);
         for (lane, query) in queries.iter().enumerate() {
@@ -183,6 +177,7 @@ impl Tracer<'_> {
             slot: &self.slot,
             class: asked.class.bit(),
             parts: self.remembers,
+            tree: &mut self.tree,
         };
         shared.search(group, asked, Place::WORLD, t_max, queries);
     }
@@ -197,6 +192,8 @@ struct Shared<'v, 's> {
     class: u8,
     /// Whether to search only the part of a group that matters to the query.
     parts: bool,
+    /// What a packet meets of a CSG tree.
+    tree: &'v mut PacketTree,
 }
 
 impl<'s> Shared<'_, 's> {
@@ -380,8 +377,18 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         let side_by_side = match (shape.shape, shape.transform) {
             // The test of a box along the axes takes too little time.
             (Shape::Cuboid(_), None) => false,
+            (Shape::Csg(tree), _) if tree.goes_in_packets() && lanes.count_ones() >= FEW => {
+                self.meet_tree(id, &shape, tree, lanes, t_max);
+                self.shared.slot.enter(Phase::Traversal);
+                return;
+            }
             (shape, _) => PacketSpans::know(shape) && are_dense(lanes & !self.lanes_from(id)),
         };
+        if Q::ALL {
+            self.meet_all(id, &shape, side_by_side, lanes, t_max);
+            self.shared.slot.enter(Phase::Traversal);
+            return;
+        }
         match (shape.shape, shape.transform) {
             // Nearly every scene has a plane, and all rays are tested for it: the test is compiled into the loop.
             (Shape::Plane(plane), None) => {
@@ -407,6 +414,117 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         lanes
     }
 
+    /// Tests a tree for several rays: its leaves four side by side.
+    fn meet_tree(
+        &mut self,
+        id: u32,
+        shape: &PlainShape<'_>,
+        tree: &Csg,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+    ) {
+        let starting = self.lanes_from(id);
+        let ranges = PacketRanges {
+            rays: self.asked.rays,
+            min: self.asked.min,
+            t_max,
+            starting,
+        };
+        let map = shape.transform;
+        let known = &mut self.shared.tree;
+        known.find(tree, &ranges, map, lanes);
+        let mut found = self.shared.scratch.take_hits();
+        for (place, lane) in lanes_of(lanes).enumerate() {
+            let before = t_max[lane];
+            if !(before > f64::NEG_INFINITY) {
+                continue;
+            }
+            let range = Interval::new(self.asked.min, before);
+            let from = match self.asked.from[lane] {
+                Some(origin) if starting >> lane & 1 == 1 => {
+                    Some(shape.start(origin, origin.id - self.place.base))
+                }
+                _ => None,
+            };
+            let ray = &self.asked.rays[lane];
+            let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
+            let scratch = &mut *self.shared.scratch;
+            let query = &mut self.queries[lane];
+            if Q::ALL {
+                found.clear();
+                if !known.all(tree, place, &inner, range, from, scratch, &mut found) {
+                    found.clear();
+                    tree.all_hits(&inner, range, from, scratch, &mut found);
+                }
+                for hit in &found {
+                    t_max[lane] = query.take(shape.hit(hit), t_max[lane]);
+                }
+                continue;
+            }
+            let hit = match known.closest(tree, place, &inner, range, from, scratch) {
+                Some(hit) => hit,
+                None => tree.closest_hit(&inner, range, from, scratch),
+            };
+            if let Some(hit) = hit {
+                let hit = match Q::ANY {
+                    true => PrimHit::simple(range.max, 0),
+                    false => hit,
+                };
+                t_max[lane] = query.take(shape.hit(&hit), before);
+            }
+        }
+        self.shared.scratch.give_hits(found);
+    }
+
+    /// Finds where those of several rays that don't start on a shape are inside of it, four side by side.
+    fn find_spans(&mut self, id: u32, shape: &PlainShape<'_>, lanes: u32) {
+        let elsewhere = lanes & !self.lanes_from(id);
+        let rays = self
+            .coordinates
+            .get_or_insert_with(|| PacketRays::new(self.asked.rays));
+        self.spans
+            .find(shape.shape, rays, shape.transform, elsewhere);
+    }
+
+    /// Takes all hits of several rays on a shape, found four `side_by_side` or one by one.
+    fn meet_all(
+        &mut self,
+        id: u32,
+        shape: &PlainShape<'_>,
+        side_by_side: bool,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+    ) {
+        if side_by_side {
+            self.find_spans(id, shape, lanes);
+        }
+        let mut found = self.shared.scratch.take_hits();
+        for lane in lanes_of(lanes) {
+            if !(t_max[lane] > f64::NEG_INFINITY) {
+                continue;
+            }
+            let range = Interval::new(self.asked.min, t_max[lane]);
+            let from = match self.asked.from[lane] {
+                Some(origin) if id == self.from_prims[lane] => {
+                    Some(shape.start(origin, origin.id - self.place.base))
+                }
+                _ => None,
+            };
+            found.clear();
+            let known = side_by_side
+                && from.is_none()
+                && self.spans.all(shape.shape, lane, range, &mut found);
+            if !known {
+                let ray = &self.asked.rays[lane];
+                shape.meet_all(ray, range, from, self.shared.scratch, &mut found);
+            }
+            for hit in &found {
+                t_max[lane] = self.queries[lane].take(shape.hit(hit), t_max[lane]);
+            }
+        }
+        self.shared.scratch.give_hits(found);
+    }
+
     /// Tests a shape for several rays: four side by side.
     fn meet_spans(
         &mut self,
@@ -415,12 +533,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         lanes: u32,
         t_max: &mut [f64; PACKET],
     ) {
-        let elsewhere = lanes & !self.lanes_from(id);
-        let rays = self
-            .coordinates
-            .get_or_insert_with(|| PacketRays::new(self.asked.rays));
-        self.spans
-            .find(shape.shape, rays, shape.transform, elsewhere);
+        self.find_spans(id, shape, lanes);
         for lane in lanes_of(lanes) {
             let before = t_max[lane];
             if !(before > f64::NEG_INFINITY) {
@@ -514,7 +627,7 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, '_, Q> {
         if prim.visible & self.shared.class == 0 || !self.queries[0].wants(prim.flags) {
             return;
         }
-        if let Some(index) = prim.plain_shape().filter(|_| !Q::ALL && !Q::WATCHES) {
+        if let Some(index) = prim.plain_shape().filter(|_| !Q::WATCHES) {
             self.plain_shape(id, index, lanes, t_max);
             return;
         }

@@ -93,9 +93,23 @@ impl<'g> PlainShape<'g> {
         }))
     }
 
+    /// Appends all places where a ray meets it.
+    #[inline]
+    pub(super) fn meet_all(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        let inner = self.transform.map_or(*ray, |map| map.ray_to_object(ray));
+        self.shape.all_hits(&inner, range, from, scratch, out);
+    }
+
     /// A hit in the scene.
     #[inline(always)]
-    fn hit(&self, found: &PrimHit) -> Hit {
+    pub(super) fn hit(&self, found: &PrimHit) -> Hit {
         Hit {
             t: found.t,
             id: self.number + u64::from(found.surface.element),

@@ -10,7 +10,7 @@ use crate::layers;
 use crate::observer::{LightTerm, ShadowReport, TraceObserver};
 use crate::shadow::{Shadow, ShadowRay};
 use arrayvec::ArrayVec;
-use strahl_accel::{PACKET, lanes_of};
+use strahl_accel::PACKET;
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::{Color, Light, LightSample};
 
@@ -248,35 +248,32 @@ impl<'s> TreeTracer<'s> {
             (from[lane], t_max[lane], places[lane]) = (Some(origin), aim.range.max, index);
         }
         let stopped = self.tracer.all_occluded(&rays, min, t_max, &from, light);
+        let open = !stopped & ((1 << rays.len()) - 1);
         let transmits = self.tracer.scene.transmits;
-        let mut open = !stopped & ((1 << rays.len()) - 1);
-        let (all, mut crossing) = (open.count_ones(), 0);
-        if transmits && all > 0 && !self.tracer.crossed[light] {
-            for lane in lanes_of(stopped) {
-                t_max[lane] = f64::NEG_INFINITY;
+        let mut lists = std::mem::take(&mut self.packet_hits);
+        if transmits && open != 0 {
+            for (lane, hits) in lists.iter_mut().enumerate() {
+                hits.clear();
+                if open >> lane & 1 == 0 {
+                    t_max[lane] = f64::NEG_INFINITY;
+                }
             }
-            open = self.tracer.any_transmitting(&rays, min, t_max, &from);
+            self.tracer
+                .all_transmitting_hits(&rays, min, t_max, &from, &mut lists);
         }
         for (lane, index) in places[..rays.len()].iter().enumerate() {
-            let shadow = &mut shadows[index % PACKET];
-            if stopped >> lane & 1 == 1 {
-                *shadow = Shadow::STOPPED;
+            shadows[index % PACKET] = if stopped >> lane & 1 == 1 {
+                Shadow::STOPPED
             } else if transmits {
                 let from = from[lane].unwrap_or(&Origin::NOWHERE);
                 let shadow_ray = aims[*index].shadow_ray(light, &rays[lane], from);
-                *shadow = if open >> lane & 1 == 1 {
-                    let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                    self.tracer.filtered(&shadow_ray, media, hits)
-                } else {
-                    self.tracer.unobstructed(&shadow_ray, &mut self.media)
-                };
-                crossing += u32::from(shadow.hit);
+                let hits = &mut lists[lane];
+                self.tracer.filtered(&shadow_ray, &mut self.media, hits)
             } else {
-                *shadow = Shadow::NONE;
-            }
+                Shadow::NONE
+            };
         }
-        // Where most rays meet something, looking for those that don't is in vain.
-        self.tracer.crossed[light] = 2 * crossing > all;
+        self.packet_hits = lists;
         for (index, aim) in aims.iter().enumerate().take(PACKET) {
             if alone >> index & 1 == 1 {
                 shadows[index] = self.shadow_of(aim, light);
