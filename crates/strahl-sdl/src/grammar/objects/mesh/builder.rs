@@ -1,4 +1,4 @@
-use std::collections::HashMap;
+use super::numbered::Numbered;
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 
@@ -11,19 +11,13 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Collects triangles whose corners refer to positions, normals and texture coordinates independently.
 #[derive(Debug, Default)]
 pub(super) struct Builder {
-    corners: Vec<Corner>,
+    corners: Numbered<Corner>,
     faces: Vec<[u32; 3]>,
-    known: HashMap<Corner, u32>,
 }
 
 impl Builder {
     pub(super) fn add(&mut self, triangle: [Corner; 3]) {
-        let face = triangle.map(|corner| {
-            *self.known.entry(corner).or_insert_with(|| {
-                self.corners.push(corner);
-                self.corners.len() as u32 - 1
-            })
-        });
+        let face = triangle.map(|corner| self.corners.number(corner));
         self.faces.push(face);
     }
 
@@ -34,7 +28,7 @@ impl Builder {
         normals: &[DVec3],
         uvs: &[[f64; 2]],
     ) -> MeshData {
-        let corners = &self.corners;
+        let corners = &self.corners.list;
         let vector = |list: &[DVec3], index: u32| list.get(index as usize).copied();
         let vertices: Vec<DVec3> = corners
             .iter()

@@ -3,6 +3,7 @@
 mod blend;
 mod builder;
 mod indexed;
+mod numbered;
 mod orient;
 mod triangles;
 

@@ -1,4 +1,5 @@
 use super::builder::{Builder, NONE};
+use super::numbered::Numbered;
 use super::{Parts, has_area, texture_number};
 use crate::grammar::objects::triangle::{corners, corners_with_normals};
 use crate::grammar::{Entity, Texture};
@@ -6,30 +7,6 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use std::collections::HashMap;
 use strahl_math::DVec3;
-
-/// A list without duplicates: equal entries have one index.
-#[derive(Default)]
-struct Numbered<const N: usize>
-where
-    [u64; N]: Default,
-{
-    list: Vec<[f64; N]>,
-    known: HashMap<[u64; N], u32>,
-}
-
-impl<const N: usize> Numbered<N>
-where
-    [u64; N]: Default,
-{
-    fn number(&mut self, entry: [f64; N]) -> u32 {
-        // Adding 0 turns -0 into 0.
-        let bits = entry.map(|x| (x + 0.0).to_bits());
-        *self.known.entry(bits).or_insert_with(|| {
-            self.list.push(entry);
-            self.list.len() as u32 - 1
-        })
-    }
-}
 
 /// The properties common to all triangles of one mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -42,9 +19,9 @@ struct Kind {
 /// The triangles read so far.
 #[derive(Default)]
 struct Draft {
-    positions: Numbered<3>,
-    normals: Numbered<3>,
-    uvs: Numbered<2>,
+    positions: Numbered<[f64; 3]>,
+    normals: Numbered<[f64; 3]>,
+    uvs: Numbered<[f64; 2]>,
     textures: Vec<Texture>,
     /// Triangles of one kind, in the order of the scene.
     groups: Vec<(Kind, Builder)>,
@@ -159,7 +136,7 @@ impl Draft {
     }
 
     fn finish(self, has_inside: bool) -> Parts {
-        let vectors = |list: &Numbered<3>| -> Vec<DVec3> {
+        let vectors = |list: &Numbered<[f64; 3]>| -> Vec<DVec3> {
             list.list.iter().map(|v| DVec3::from_array(*v)).collect()
         };
         let (positions, normals) = (vectors(&self.positions), vectors(&self.normals));
