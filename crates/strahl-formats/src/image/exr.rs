@@ -6,17 +6,29 @@ mod read;
 
 pub use read::{ExrFile, ExrHeader, read_exr, read_exr_header};
 
-use std::io::{self, Cursor, Write};
+use std::io::{self, Cursor, Read, Seek, Write};
 
 use ::exr::error::Error;
 use ::exr::image::write::WritableImage;
 use ::exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
+use ::exr::io::Tracking;
 use ::exr::math::Vec2;
+use ::exr::meta::MetaData;
 use ::exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, Text};
 use ::exr::meta::header::{ImageAttributes, LayerAttributes};
 use ::exr::prelude::f16;
 
 use super::{LayerData, Picture, WriteOptions};
+
+/// Where a file is read from. The decoder is compiled for each type that it reads from, so it always gets `&mut dyn Source`.
+pub(super) trait Source: Read + Seek {}
+impl<S: Read + Seek> Source for S {}
+
+/// The headers of a file; that they fit together is not checked.
+pub(super) fn headers(bytes: &[u8]) -> Result<MetaData, Error> {
+    let source: &mut dyn Source = &mut Cursor::new(bytes);
+    MetaData::read_from_buffered(Tracking::new(source), false)
+}
 
 pub(super) fn encode(
     writer: &mut dyn Write,

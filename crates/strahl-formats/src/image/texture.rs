@@ -5,12 +5,11 @@ use std::io::Cursor;
 use std::path::Path;
 
 use ::exr::image::read::read;
-use ::exr::meta::MetaData;
 use ::exr::prelude::{ReadChannels, ReadLayers};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat as FileFormat, ImageReader, Limits};
 use strahl_shade::image_texture::{ColorSpace, TexelChannels, TexelData, TextureImage};
 
-use super::ImageError;
+use super::{ImageError, exr};
 
 /// The most texels of a texture, 2^30.
 pub const MAX_TEXELS: u64 = 1 << 30;
@@ -116,7 +115,7 @@ pub(super) const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Red, green, blue and, where there is one, alpha of the first part of an OpenEXR file; the texture is its data window.
 fn decode_exr(bytes: &[u8], name: &str) -> Result<TextureImage, ImageError> {
     let failed = |error: ::exr::error::Error| decode_error(name, error);
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
+    let meta = exr::headers(bytes).map_err(failed)?;
     for header in &meta.headers {
         let size = header.layer_size;
         check_size(name, size.width() as u64, size.height() as u64, 16)?;
@@ -135,7 +134,7 @@ fn decode_exr(bytes: &[u8], name: &str) -> Result<TextureImage, ImageError> {
         )
         .first_valid_layer()
         .all_attributes()
-        .from_buffered(Cursor::new(bytes))
+        .from_buffered(&mut Cursor::new(bytes) as &mut dyn exr::Source)
         .map_err(failed)?;
     let size = image.layer_data.size;
     let (_, samples) = image.layer_data.channel_data.pixels;

@@ -15,7 +15,7 @@ use ::exr::prelude::{ReadChannels, ReadLayers};
 
 use super::super::texture::check_size;
 use super::super::{ImageError, LayerData, Window};
-use super::PREFIX;
+use super::{PREFIX, Source, headers};
 
 /// What the header of an OpenEXR file says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub fn read_exr(path: impl AsRef<Path>) -> Result<ExrFile, ImageError> {
 pub fn read_exr_header(path: impl AsRef<Path>) -> Result<ExrHeader, ImageError> {
     let path = path.as_ref();
     let file = File::open(path).map_err(|error| unreadable(path, &error))?;
-    header_and_end(BufReader::new(file)).map_err(|problem| problem.of(path))
+    header_and_end(&mut BufReader::new(file)).map_err(|problem| problem.of(path))
 }
 
 fn unreadable(path: &Path, error: &io::Error) -> ImageError {
@@ -104,7 +104,7 @@ fn only_part(meta: &MetaData) -> Result<&Header, Problem> {
     }
 }
 
-fn header_and_end(file: BufReader<File>) -> Result<ExrHeader, Problem> {
+fn header_and_end(file: &mut dyn Source) -> Result<ExrHeader, Problem> {
     let reader = Reader::read_from_buffered(file, false)?;
     let part = only_part(reader.meta_data())?;
     let (header, count) = (header(part)?, part.chunk_count);
@@ -156,7 +156,7 @@ fn header(part: &Header) -> Result<ExrHeader, Problem> {
 }
 
 fn decode(bytes: &[u8], name: &str) -> Result<ExrFile, Problem> {
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+    let meta = headers(bytes)?;
     let part = only_part(&meta)?;
     let size = part.layer_size;
     let sample_bytes = 4 * part.channels.list.len().max(1) as u64;
@@ -173,7 +173,7 @@ fn decode(bytes: &[u8], name: &str) -> Result<ExrFile, Problem> {
         .all_channels()
         .first_valid_layer()
         .all_attributes()
-        .from_buffered(Cursor::new(bytes))?;
+        .from_buffered(&mut Cursor::new(bytes) as &mut dyn Source)?;
     let layer = image.layer_data;
     let pixels = layer.size.area();
     let mut channels = BTreeMap::new();
