@@ -1,7 +1,7 @@
 use super::buffers::Buffers;
-use gltf::json::accessor::{Accessor, ComponentType, Type};
-use gltf::json::validation::Checked;
-use gltf::json::{Index, Root};
+use gltf_json::accessor::{Accessor, ComponentType, Type};
+use gltf_json::validation::Checked;
+use gltf_json::{Index, Root};
 
 /// The elements of an accessor. Every access stays within its buffer.
 pub(super) struct Elements<'a> {

@@ -1,7 +1,10 @@
 use crate::input::Folder;
 use crate::input::bytes::{path_beside, read_beside};
-use gltf::json::buffer::View;
-use gltf::json::{Index, Root};
+use base64::alphabet;
+use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
+use base64::engine::{DecodePaddingMode, Engine as _};
+use gltf_json::buffer::View;
+use gltf_json::{Index, Root};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -96,12 +99,22 @@ impl Bytes<'_> {
     }
 }
 
+/// With or without the `=` at its end.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
 /// The bytes of a `data:` URI.
 pub(super) fn data_uri(uri: &str) -> Result<Vec<u8>, String> {
-    // Without a folder the crate reads no files, and `data:` URIs name none.
-    gltf::buffer::Data::from_source(gltf::buffer::Source::Uri(uri), None)
-        .map(|data| data.0)
-        .map_err(|e| format!("its data is damaged: {e}"))
+    let data = uri.strip_prefix("data:").unwrap_or(uri);
+    let data = data.split_once(";base64,").map_or(data, |(_, data)| data);
+    let mut bytes = BASE64
+        .decode(data)
+        .map_err(|e| format!("its data is damaged: {e}"))?;
+    // Some writers count the padding to whole words, too.
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    Ok(bytes)
 }
 
 /// A URI with its percent-encoding decoded.
@@ -158,6 +171,8 @@ mod tests {
             data_uri("data:application/octet-stream;base64,AQID").map(|b| b[..3].to_vec()),
             Ok(vec![1, 2, 3])
         );
+        assert_eq!(data_uri("data:;base64,AQ=="), Ok(vec![1, 0, 0, 0]));
+        assert_eq!(data_uri("data:;base64,AQ"), data_uri("data:;base64,AQ=="));
         assert!(data_uri("data:,xyz").is_err());
     }
 }

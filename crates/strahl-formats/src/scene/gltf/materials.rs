@@ -2,11 +2,11 @@ use super::buffers::{Buffers, data_uri, decoded, shown};
 use crate::image::{TextureUse, decode_texture};
 use crate::input::textures::TextureFiles;
 use crate::input::{Input, Report};
-use gltf::json::Root;
-use gltf::json::extensions::material::Material as Extensions;
-use gltf::json::material::AlphaMode;
-use gltf::json::texture::{Info, MagFilter, WrappingMode};
-use gltf::json::validation::Checked;
+use gltf_json::Root;
+use gltf_json::extensions::material::Material as Extensions;
+use gltf_json::material::AlphaMode;
+use gltf_json::texture::{Info, MagFilter, WrappingMode};
+use gltf_json::validation::Checked;
 use std::collections::HashMap;
 use std::sync::Arc;
 use strahl_math::det;
@@ -310,7 +310,7 @@ fn use_of(info: &Info) -> Use {
         .extensions
         .as_ref()
         .and_then(|e| e.texture_transform.as_ref());
-    let map = |t: &gltf::json::extensions::texture::TextureTransform| {
+    let map = |t: &gltf_json::extensions::texture::TextureTransform| {
         uv_map(t.offset.0, t.rotation.0, t.scale.0)
     };
     Use {
@@ -323,16 +323,16 @@ fn use_of(info: &Info) -> Use {
 }
 
 /// The same for normal and occlusion textures, whose extensions the crate leaves as JSON.
-fn plain_use(texture: usize, set: u32, transform: Option<&gltf::json::Value>) -> Use {
-    let number = |value: Option<&gltf::json::Value>| {
-        value.and_then(gltf::json::Value::as_f64).map(|x| x as f32)
+fn plain_use(texture: usize, set: u32, transform: Option<&gltf_json::Value>) -> Use {
+    let number = |value: Option<&gltf_json::Value>| {
+        value.and_then(gltf_json::Value::as_f64).map(|x| x as f32)
     };
     let get = |key: &str| transform.and_then(|t| t.get(key));
     let pair = |key: &str, default: f32| {
         [0, 1].map(|i| number(get(key).and_then(|v| v.get(i))).unwrap_or(default))
     };
     let overriding = get("texCoord")
-        .and_then(gltf::json::Value::as_u64)
+        .and_then(gltf_json::Value::as_u64)
         .and_then(|set| u32::try_from(set).ok());
     Use {
         texture,

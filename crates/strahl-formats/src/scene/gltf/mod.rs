@@ -26,8 +26,8 @@ mod nodes;
 use crate::input::text::Text;
 use crate::input::{Input, Report};
 use buffers::Buffers;
-use gltf::json::validation::{Error, Validate};
-use gltf::json::{Path as JsonPath, Root};
+use gltf_json::validation::{Error, Validate};
+use gltf_json::{Path as JsonPath, Root};
 use strahl_scene::{Diagnostic, Scene};
 
 /// The extensions that are understood, or may be ignored without harm even if they are required.
@@ -222,7 +222,7 @@ fn in_words(error: Error) -> &'static str {
     }
 }
 
-fn syntax_error(text: Text<'_>, error: &gltf::json::Error) -> Diagnostic {
+fn syntax_error(text: Text<'_>, error: &gltf_json::Error) -> Diagnostic {
     let message = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     let what = message.strip_suffix(&place).unwrap_or(&message);

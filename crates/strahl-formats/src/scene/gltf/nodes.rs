@@ -1,11 +1,11 @@
 use super::materials::Materials;
 use super::meshes::Meshes;
 use crate::input::Report;
-use gltf::json::Root;
-use gltf::json::camera::Type as CameraType;
-use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};
-use gltf::json::scene::Node;
-use gltf::json::validation::Checked;
+use gltf_json::Root;
+use gltf_json::camera::Type as CameraType;
+use gltf_json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};
+use gltf_json::scene::Node;
+use gltf_json::validation::Checked;
 use std::f64::consts::PI;
 use strahl_math::{DAffine3, DMat3, DQuat, DVec3, Transform, det};
 use strahl_scene::{
