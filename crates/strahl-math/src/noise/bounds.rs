@@ -1,8 +1,8 @@
 //! What noise can be within a box: for proofs that a function has no zero there.
 
-use super::kernel::{CELL_SHIFT, OVERFLOW, floor, whole};
+use super::kernel::{CELL_SHIFT, OVERFLOW, smooth_lanes, whole};
 use super::tables::{CORNERS, hash};
-use super::{NoiseGenerator, SHIFT, perlin_gradient, smooth, unit};
+use super::{NoiseGenerator, SHIFT, perlin_gradient, unit};
 use crate::DVec3;
 use strahl_simd::{Isa, Simd, dispatch};
 
@@ -116,32 +116,38 @@ fn over_cells<I: Isa>(
     way: Option<&[Range; 3]>,
     generator: NoiseGenerator,
 ) -> Option<Course> {
-    if min.cmple(DVec3::splat(-OVERFLOW)).any() || max.cmpge(DVec3::splat(OVERFLOW)).any() {
-        return None;
-    }
-    let floors = |p: DVec3| DVec3::new(floor::<I>(p.x), floor::<I>(p.y), floor::<I>(p.z));
-    let (first, last) = (floors(min), floors(max));
+    let min = isa.load(&[min.x, min.y, min.z, 0.0]);
+    let max = isa.load(&[max.x, max.y, max.z, 0.0]);
+    let is_near = isa.lt(isa.splat(-OVERFLOW), min) & isa.lt(max, isa.splat(OVERFLOW));
     // Also refuses NaN.
-    if !((last - first).cmple(DVec3::ONE).all() && max.cmpge(min).all()) {
+    if is_near & isa.le(min, max) != 0b1111 {
         return None;
     }
-    let mut hull: Option<Course> = None;
-    for bits in 0..8_usize {
-        let step = DVec3::new(
-            (bits >> 2) as f64,
-            (bits >> 1 & 1) as f64,
-            (bits & 1) as f64,
-        );
-        let cell = first + step;
-        if cell.cmpgt(last).any() {
-            continue;
-        }
-        let from = (min - cell).max(DVec3::ZERO);
-        let to = (max - cell).min(DVec3::ONE);
-        let course = in_cell(isa, cell, from, to, way, generator);
-        hull = Some(hull.map_or(course, |hull| hull.hull(course)));
+    let (zero, one) = (isa.splat(0.0), isa.splat(1.0));
+    let (first, last) = (isa.floor(min), isa.floor(max));
+    if isa.lt(one, isa.sub(last, first)) != 0 {
+        return None;
     }
-    hull
+    // The axes along which the box reaches into a second cell, a bit for each; all sets of them are a cell each.
+    let axes = isa.lt(first, last);
+    let (mut steps, mut hull) = (0_u32, None::<Course>);
+    loop {
+        let (x, y, z) = (steps & 1, steps >> 1 & 1, steps >> 2);
+        let step = isa.load(&[f64::from(x), f64::from(y), f64::from(z), 0.0]);
+        let cell = isa.add(first, step);
+        let from = isa.max(isa.sub(min, cell), zero);
+        let to = isa.min(isa.sub(max, cell), one);
+        let course = in_cell(isa, cell, from, to, way, generator);
+        let all = match hull {
+            None => course,
+            Some(others) => others.hull(course),
+        };
+        steps = steps.wrapping_sub(axes) & axes;
+        if steps == 0 {
+            return Some(all);
+        }
+        hull = Some(all);
+    }
 }
 
 /// The values and gradients of the four lower (0) or upper (1) corners of a cell along z; corner `2 i + j` is the lower or the upper one along x
@@ -168,24 +174,33 @@ fn corners<I: Isa>(isa: I, cell: [usize; 3], z: usize, generator: NoiseGenerator
     isa.transpose(all)
 }
 
-/// Bounds over the part of one cell between `from` and `to`, both in the unit cube.
+/// Bounds over the part of one cell between `from` and `to`, both in the unit cube. The last lanes mean nothing.
 #[inline(always)]
 fn in_cell<I: Isa>(
     isa: I,
-    cell: DVec3,
-    from: DVec3,
-    to: DVec3,
+    cell: I::F64x4,
+    from: I::F64x4,
+    to: I::F64x4,
     way: Option<&[Range; 3]>,
     generator: NoiseGenerator,
 ) -> Course {
-    let numbers = if generator == NoiseGenerator::Perlin {
-        [cell.x, cell.y, cell.z].map(|c| whole(c) & 2047)
-    } else {
-        [cell.x, cell.y, cell.z].map(whole)
-    };
-    let (middle, reach) = (0.5 * (from + to), 0.5 * (to - from));
+    let [x, y, z, _] = isa.store(cell);
+    let mut numbers = [whole(x), whole(y), whole(z)];
+    if generator == NoiseGenerator::Perlin {
+        for number in &mut numbers {
+            *number &= 2047;
+        }
+    }
+    let half = isa.splat(0.5);
+    let middle = isa.store(isa.mul(half, isa.add(from, to)));
+    let reach = isa.store(isa.mul(half, isa.sub(to, from)));
+    let reach = [
+        isa.splat(reach[0]),
+        isa.splat(reach[1]),
+        isa.splat(reach[2]),
+    ];
     // From four corners to the middle, along x and y.
-    let (x, y) = (middle.x, middle.y);
+    let (x, y) = (middle[0], middle[1]);
     let ways = [
         isa.load(&[x, x, x - 1.0, x - 1.0]),
         isa.load(&[y, y - 1.0, y, y - 1.0]),
@@ -194,33 +209,38 @@ fn in_cell<I: Isa>(
     let (mut at, mut rates) = ([(zero, zero); 2], [(zero, zero); 2]);
     for z in 0..2 {
         let [value, gx, gy, gz] = corners(isa, numbers, z, generator);
-        let deep = isa.splat(middle.z - z as f64);
+        let deep = isa.splat(middle[2] - z as f64);
         let middle = isa.add(value, along(isa, [gx, gy, gz], [ways[0], ways[1], deep]));
-        let [rx, ry, rz] = [gx, gy, gz].map(
-            #[inline(always)]
-            |g| isa.abs(g),
-        );
-        let splat = |p: [f64; 3]| [isa.splat(p[0]), isa.splat(p[1]), isa.splat(p[2])];
-        let off = along(isa, [rx, ry, rz], splat(reach.to_array()));
+        let sizes = [isa.abs(gx), isa.abs(gy), isa.abs(gz)];
+        let off = along(isa, sizes, reach);
         at[z] = (isa.sub(middle, off), isa.add(middle, off));
         if let Some([x, y, z_way]) = way {
-            let mid = |r: &Range| 0.5 * (r.0 + r.1);
-            let half = |r: &Range| 0.5 * (r.1 - r.0);
-            let middle = along(isa, [gx, gy, gz], splat([mid(x), mid(y), mid(z_way)]));
-            let off = along(isa, [rx, ry, rz], splat([half(x), half(y), half(z_way)]));
+            let mid = |r: &Range| isa.splat(0.5 * (r.0 + r.1));
+            let half = |r: &Range| isa.splat(0.5 * (r.1 - r.0));
+            let middle = along(isa, [gx, gy, gz], [mid(x), mid(y), mid(z_way)]);
+            let off = along(isa, sizes, [half(x), half(y), half(z_way)]);
             rates[z] = (isa.sub(middle, off), isa.add(middle, off));
         }
     }
-    let shares = [0, 1, 2].map(
-        #[inline(always)]
-        |axis| Share::new(from[axis], to[axis], way.map(|way| way[axis])),
-    );
-    let Share { s0, s1, q0, q1 } = shares[2];
-    let (low, high) = ends(isa, at[0], at[1], (s0, s1));
+    let s0 = isa.store(smooth_lanes(isa, from));
+    let s1 = isa.store(smooth_lanes(isa, to));
+    let (q0, q1) = match way {
+        Some(way) => share_rates(isa, from, to, way),
+        None => ([0.0; 4], [0.0; 4]),
+    };
+    let share = |axis: usize| Share {
+        s0: s0[axis],
+        s1: s1[axis],
+        q0: q0[axis],
+        q1: q1[axis],
+    };
+    let asked = way.is_some();
+    let (low, high) = ends(isa, at[0], at[1], share(2));
     let (low, high) = (isa.store(low), isa.store(high));
     let (mut fall, mut rise) = ([0.0; 4], [0.0; 4]);
-    if way.is_some() {
-        let (least, most) = ends(isa, rates[0], rates[1], (s0, s1));
+    if asked {
+        let Share { q0, q1, .. } = share(2);
+        let (least, most) = ends(isa, rates[0], rates[1], share(2));
         let down = isa.sub(at[1].0, at[0].1);
         let up = isa.sub(at[1].1, at[0].0);
         let (q0, q1) = (isa.splat(q0), isa.splat(q1));
@@ -231,14 +251,31 @@ fn in_cell<I: Isa>(
         fall = isa.store(isa.add(least, less));
         rise = isa.store(isa.add(most, more));
     }
-    let column = |k: usize| Course {
-        value: (low[k], high[k]),
-        rate: (fall[k], rise[k]),
-    };
-    let asked = way.is_some();
-    let lower = shares[1].blend(column(0), column(1), asked);
-    let upper = shares[1].blend(column(2), column(3), asked);
-    shares[0].blend(lower, upper, asked)
+    let [lower, upper] = blend_pairs(isa, [low, high, fall, rise], share(1), asked);
+    blend(isa, lower, upper, share(0), asked)
+}
+
+/// The derivative along a line of the share of the upper side of a blend, axis by axis: between two numbers each.
+#[inline(always)]
+fn share_rates<I: Isa>(
+    isa: I,
+    from: I::F64x4,
+    to: I::F64x4,
+    way: &[Range; 3],
+) -> ([f64; 4], [f64; 4]) {
+    let (half, one, six) = (isa.splat(0.5), isa.splat(1.0), isa.splat(6.0));
+    // The derivative of the share by the place rises up to 1/2 and falls from there.
+    let p = isa.mul(isa.mul(six, from), isa.sub(one, from));
+    let q = isa.mul(isa.mul(six, to), isa.sub(one, to));
+    let (least, most) = (isa.min(p, q), isa.max(p, q));
+    let top = isa.splat(1.5);
+    let most = isa.choose_le(half, from, most, isa.choose_le(to, half, most, top));
+    let zero = isa.splat(0.0);
+    let a = isa.load(&[way[0].0, way[1].0, way[2].0, 0.0]);
+    let b = isa.load(&[way[0].1, way[1].1, way[2].1, 0.0]);
+    let q0 = isa.mul(a, isa.choose_le(zero, a, least, most));
+    let q1 = isa.mul(b, isa.choose_le(zero, b, most, least));
+    (isa.store(q0), isa.store(q1))
 }
 
 /// The sum of three products.
@@ -259,8 +296,9 @@ fn ends<I: Isa>(
     isa: I,
     a: (I::F64x4, I::F64x4),
     b: (I::F64x4, I::F64x4),
-    (s0, s1): Range,
+    share: Share,
 ) -> (I::F64x4, I::F64x4) {
+    let (s0, s1) = (share.s0, share.s1);
     let low = isa.min(mix(isa, a.0, b.0, s0), mix(isa, a.0, b.0, s1));
     let high = isa.max(mix(isa, a.1, b.1, s0), mix(isa, a.1, b.1, s1));
     (low, high)
@@ -275,53 +313,94 @@ struct Share {
     q1: f64,
 }
 
-impl Share {
-    /// Between two places of the unit interval, if the place changes at this rate.
-    #[inline(always)]
-    fn new(from: f64, to: f64, rate: Option<Range>) -> Self {
-        let (mut q0, mut q1) = (0.0, 0.0);
-        if let Some((a, b)) = rate {
-            // The derivative of the share by the place rises up to 1/2 and falls from there.
-            let slope = |t: f64| 6.0 * t * (1.0 - t);
-            let (p, q) = (slope(from), slope(to));
-            let most = if from < 0.5 && to > 0.5 {
-                1.5
-            } else {
-                p.max(q)
-            };
-            let least = p.min(q);
-            q0 = a * if a < 0.0 { most } else { least };
-            q1 = b * if b < 0.0 { least } else { most };
-        }
-        Self {
-            s0: smooth(from),
-            s1: smooth(to),
-            q0,
-            q1,
+#[inline(always)]
+fn less(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn more(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The blends of columns 0 and 1 and of columns 2 and 3 of least and largest values and rates. `asked` says whether the latter are asked
+/// for.
+#[inline(always)]
+fn blend_pairs<I: Isa>(
+    isa: I,
+    [low, high, fall, rise]: [[f64; 4]; 4],
+    share: Share,
+    asked: bool,
+) -> [Course; 2] {
+    let (least, most) = ends_of_pairs(isa, low, high, share);
+    let course = |k: usize| Course {
+        value: (least[k], most[k]),
+        rate: (0.0, 0.0),
+    };
+    let mut courses = [course(0), course(1)];
+    if asked {
+        let (least, most) = ends_of_pairs(isa, fall, rise, share);
+        let from = isa.load(&[high[0], high[2], low[0], low[2]]);
+        let to = isa.load(&[low[1], low[3], high[1], high[3]]);
+        let change = isa.sub(to, from);
+        let p = isa.mul(isa.splat(share.q0), change);
+        let q = isa.mul(isa.splat(share.q1), change);
+        let (down, up) = (isa.store(isa.min(p, q)), isa.store(isa.max(p, q)));
+        for k in 0..2 {
+            courses[k].rate = (
+                least[k] + less(down[k], down[k + 2]),
+                most[k] + more(up[k], up[k + 2]),
+            );
         }
     }
+    courses
+}
 
-    /// Bounds of `a + s (b - a)`: it is linear in the share `s`, so an end is extreme. `rates` says whether the derivative is asked for.
-    #[inline(always)]
-    fn blend(self, a: Course, b: Course, rates: bool) -> Course {
-        let mix = |a: f64, b: f64, s: f64| a * (1.0 - s) + b * s;
-        let ends = |a: Range, b: Range| {
-            let low = mix(a.0, b.0, self.s0).min(mix(a.0, b.0, self.s1));
-            let high = mix(a.1, b.1, self.s0).max(mix(a.1, b.1, self.s1));
-            (low, high)
-        };
-        let mut rate = (0.0, 0.0);
-        if rates {
-            let (down, up) = (b.value.0 - a.value.1, b.value.1 - a.value.0);
-            let (fall, rise) = ends(a.rate, b.rate);
-            let products = [self.q0 * down, self.q0 * up, self.q1 * down, self.q1 * up];
-            let [p, q, r, s] = products;
-            rate = (fall + p.min(q).min(r.min(s)), rise + p.max(q).max(r.max(s)));
-        }
-        Course {
-            value: ends(a.value, b.value),
-            rate,
-        }
+/// [`ends`] for columns 0 and 1 and for columns 2 and 3.
+#[inline(always)]
+fn ends_of_pairs<I: Isa>(
+    isa: I,
+    low: [f64; 4],
+    high: [f64; 4],
+    share: Share,
+) -> ([f64; 2], [f64; 2]) {
+    // Lanes 0 and 1 have the least numbers of both blends, lanes 2 and 3 the largest ones.
+    let a = isa.load(&[low[0], low[2], high[0], high[2]]);
+    let b = isa.load(&[low[1], low[3], high[1], high[3]]);
+    let (p, q) = (mix(isa, a, b, share.s0), mix(isa, a, b, share.s1));
+    let (least, most) = (isa.store(isa.min(p, q)), isa.store(isa.max(p, q)));
+    ([least[0], least[1]], [most[2], most[3]])
+}
+
+/// [`ends`] for one pair, where the shares are in lanes 0 and 1 and again in lanes 2 and 3, and `rest` is what is left of them.
+#[inline(always)]
+fn ends_of_one<I: Isa>(isa: I, a: Range, b: Range, s: I::F64x4, rest: I::F64x4) -> Range {
+    let a = isa.load(&[a.0, a.0, a.1, a.1]);
+    let b = isa.load(&[b.0, b.0, b.1, b.1]);
+    let mixes = isa.store(isa.add(isa.mul(a, rest), isa.mul(b, s)));
+    (less(mixes[0], mixes[1]), more(mixes[2], mixes[3]))
+}
+
+/// Bounds of `a + s (b - a)`: it is linear in the share `s`, so an end is extreme. `asked` says whether the derivative is asked for.
+#[inline(always)]
+fn blend<I: Isa>(isa: I, a: Course, b: Course, share: Share, asked: bool) -> Course {
+    let Share { s0, s1, q0, q1 } = share;
+    let s = isa.load(&[s0, s1, s0, s1]);
+    let rest = isa.sub(isa.splat(1.0), s);
+    let mut rate = (0.0, 0.0);
+    if asked {
+        let (down, up) = (b.value.0 - a.value.1, b.value.1 - a.value.0);
+        let (fall, rise) = ends_of_one(isa, a.rate, b.rate, s, rest);
+        let [p, q] = [q0 * down, q0 * up];
+        let [r, s] = [q1 * down, q1 * up];
+        rate = (
+            fall + less(less(p, q), less(r, s)),
+            rise + more(more(p, q), more(r, s)),
+        );
+    }
+    Course {
+        value: ends_of_one(isa, a.value, b.value, s, rest),
+        rate,
     }
 }
 

@@ -129,7 +129,7 @@ impl<V> Cell<V> {
 
 /// `3t² - 2t³` in each lane.
 #[inline(always)]
-fn smooth_lanes<I: Isa>(isa: I, t: I::F64x4) -> I::F64x4 {
+pub(super) fn smooth_lanes<I: Isa>(isa: I, t: I::F64x4) -> I::F64x4 {
     let slope = isa.sub(isa.splat(3.0), isa.mul(isa.splat(2.0), t));
     isa.mul(isa.mul(t, t), slope)
 }
