@@ -312,6 +312,23 @@ impl Dual {
         }
     }
 
+    /// [`Domain::field`] for up to so many arguments.
+    fn field_of<const MOST: usize>(field: &dyn ScalarField, arguments: &[Self]) -> Self {
+        let mut point = [0.0; MOST];
+        let mut partials = [0.0; MOST];
+        let arity = arguments.len().min(MOST);
+        for (x, dual) in point.iter_mut().zip(arguments) {
+            *x = dual.value;
+        }
+        let value = field.gradient(&point[..arity], &mut partials[..arity]);
+        arguments
+            .iter()
+            .zip(partials)
+            .fold(Self::number(value), |sum, (&dual, slope)| {
+                sum.along(dual, slope)
+            })
+    }
+
     /// Adds a derivative times the slope along it; an argument that doesn't change contributes nothing, however steep it is.
     fn along(mut self, other: Self, slope: f64) -> Self {
         for (total, partial) in self.partials.iter_mut().zip(other.partials) {
@@ -357,19 +374,11 @@ impl Domain for Dual {
         }
     }
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
-        let mut point = [0.0; limits::PARAMETERS];
-        let mut partials = [0.0; limits::PARAMETERS];
-        let arity = arguments.len().min(limits::PARAMETERS);
-        for (x, dual) in point.iter_mut().zip(arguments) {
-            *x = dual.value;
+        if arguments.len() <= limits::FEW {
+            Self::field_of::<{ limits::FEW }>(field, arguments)
+        } else {
+            Self::field_of::<{ limits::PARAMETERS }>(field, arguments)
         }
-        let value = field.gradient(&point[..arity], &mut partials[..arity]);
-        arguments
-            .iter()
-            .zip(partials)
-            .fold(Self::number(value), |sum, (&dual, slope)| {
-                sum.along(dual, slope)
-            })
     }
     fn round(counter: Self, to: Self, fuel: &mut u64, price: u64) -> Round<()> {
         <f64 as Domain>::round(counter.value, to.value, fuel, price)

@@ -45,20 +45,34 @@ pub trait ScalarField: Debug + Send + Sync {
     ///
     /// By default central differences, good to about ten digits where the field is smooth.
     fn gradient(&self, arguments: &[f64], partials: &mut [f64]) -> f64 {
-        let mut shifted = [0.0; crate::limits::PARAMETERS];
-        let shifted = &mut shifted[..arguments.len().min(crate::limits::PARAMETERS)];
-        shifted.copy_from_slice(&arguments[..shifted.len()]);
-        for (i, partial) in partials.iter_mut().enumerate().take(shifted.len()) {
-            let x = shifted[i];
-            // The cube root of the unit roundoff balances rounding against the third derivative.
-            let step = 6e-6 * if x.abs() > 1.0 { x.abs() } else { 1.0 };
-            shifted[i] = x + step;
-            let above = self.value(shifted);
-            let high = shifted[i];
-            shifted[i] = x - step;
-            *partial = (above - self.value(shifted)) / (high - shifted[i]);
-            shifted[i] = x;
-        }
-        self.value(arguments)
+        central_differences(self, arguments, partials)
     }
+}
+
+/// How far from a place the values are taken of which the difference is the derivative: the cube root of the unit roundoff balances rounding
+/// against the third derivative.
+pub(crate) fn step(x: f64) -> f64 {
+    6e-6 * if x.abs() > 1.0 { x.abs() } else { 1.0 }
+}
+
+/// [`ScalarField::gradient`] by central differences.
+pub(crate) fn central_differences(
+    field: &(impl ScalarField + ?Sized),
+    arguments: &[f64],
+    partials: &mut [f64],
+) -> f64 {
+    let mut shifted = [0.0; crate::limits::PARAMETERS];
+    let shifted = &mut shifted[..arguments.len().min(crate::limits::PARAMETERS)];
+    shifted.copy_from_slice(&arguments[..shifted.len()]);
+    for (i, partial) in partials.iter_mut().enumerate().take(shifted.len()) {
+        let x = shifted[i];
+        let step = step(x);
+        shifted[i] = x + step;
+        let above = field.value(shifted);
+        let high = shifted[i];
+        shifted[i] = x - step;
+        *partial = (above - field.value(shifted)) / (high - shifted[i]);
+        shifted[i] = x;
+    }
+    field.value(arguments)
 }

@@ -90,6 +90,11 @@ fn fill<T: Domain, A: Copy>(
     convert: impl Fn(A) -> T,
 ) {
     let inputs = &mut stack[..tape.inputs];
+    // A point in space, without a loop and without a call that copies it.
+    if let ([x, y, z], &[a, b, c]) = (&mut *inputs, arguments) {
+        (*x, *y, *z) = (convert(a), convert(b), convert(c));
+        return;
+    }
     for (register, &argument) in inputs.iter_mut().zip(arguments) {
         *register = convert(argument);
     }

@@ -2,7 +2,7 @@
 
 use crate::domain::{Domain, Round};
 use crate::op::{BinaryOp, UnaryOp};
-use crate::tape::{FRAME, Op, Tape};
+use crate::tape::{FRAME, FieldCode, Op, Tape};
 
 /// Writes the constants of a tape to their registers.
 pub(crate) fn prepare<T: Domain>(tape: &Tape, stack: &mut [T]) {
@@ -83,7 +83,15 @@ fn binary<T: Domain>(op: BinaryOp, a: T, b: T) -> T {
 
 #[inline(never)]
 fn field<T: Domain>(tape: &Tape, at: usize, registers: &[T], stack: &mut [T]) -> T {
-    let (field, arguments) = &tape.fields[at];
+    let FieldCode {
+        field,
+        arguments,
+        is_row,
+    } = &tape.fields[at];
+    if let (true, Some(&first)) = (*is_row, arguments.first()) {
+        let first = first as usize;
+        return T::field(field.as_ref(), &registers[first..first + arguments.len()]);
+    }
     gather(registers, arguments, stack);
     T::field(field.as_ref(), &stack[..arguments.len()])
 }

@@ -109,7 +109,7 @@ pub(crate) struct Tape {
     pub(crate) stack: usize,
     pub(crate) result: u32,
     pub(crate) selects: Vec<[u32; 3]>,
-    pub(crate) fields: Vec<(Arc<dyn ScalarField>, Vec<u32>)>,
+    pub(crate) fields: Vec<FieldCode>,
     pub(crate) calls: Vec<(Function, Vec<u32>)>,
     pub(crate) loops: Vec<LoopCode>,
     /// What a run takes without the rounds of loops.
@@ -136,16 +136,37 @@ impl Tape {
 
     /// Whether all fields it reads have bounds.
     pub(crate) fn is_bounded(&self) -> bool {
-        self.fields.iter().all(|(field, _)| field.is_bounded())
+        self.fields.iter().all(|f| f.field.is_bounded())
             && self.calls.iter().all(|(f, _)| f.tape().is_bounded())
             && self.loops.iter().all(|l| l.body.is_bounded())
     }
 
     /// Whether the rates of change of all fields it reads can be known.
     pub(crate) fn has_rates(&self) -> bool {
-        self.fields.iter().all(|(field, _)| field.has_rates())
+        self.fields.iter().all(|f| f.field.has_rates())
             && self.calls.iter().all(|(f, _)| f.tape().has_rates())
             && self.loops.iter().all(|l| l.body.has_rates())
+    }
+}
+
+/// A call of a field.
+#[derive(Debug)]
+pub(crate) struct FieldCode {
+    pub(crate) field: Arc<dyn ScalarField>,
+    /// The registers of the arguments.
+    pub(crate) arguments: Vec<u32>,
+    /// Whether these registers lie side by side, so that no argument has to be copied.
+    pub(crate) is_row: bool,
+}
+
+impl FieldCode {
+    fn new(field: Arc<dyn ScalarField>, arguments: Vec<u32>) -> Self {
+        let is_row = arguments.windows(2).all(|pair| pair[0] + 1 == pair[1]);
+        Self {
+            field,
+            arguments,
+            is_row,
+        }
     }
 }
 
@@ -309,7 +330,8 @@ fn assemble(
                 let arguments = many(graph.arguments(list))?;
                 nested = nested.max(arguments.len());
                 tape.count(field.cost().operations, 0);
-                tape.fields.push((Arc::clone(field), arguments));
+                tape.fields
+                    .push(FieldCode::new(Arc::clone(field), arguments));
                 (Op::Field, 0, tape.fields.len() as u32 - 1)
             }
             Node::Call(id, list) => {

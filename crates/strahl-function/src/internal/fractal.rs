@@ -6,12 +6,12 @@
 use super::{Formula, Internal};
 use crate::bounds::Bounds;
 use crate::cost::Cost;
-use crate::field::ScalarField;
+use crate::field::{ScalarField, central_differences, step};
 use crate::graph::{Expr, Graph};
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_math::det;
-use strahl_math::noise::{NoiseGenerator, noise, noise_bounds, noise_rate};
+use strahl_math::noise::{NoiseGenerator, noise, noise_bounds, noise_of_four, noise_rate};
 
 pub(super) const TABLE: &[Internal] = &[
     row("f_noise3d", 0, Kind::Noise),
@@ -119,8 +119,11 @@ impl ScalarField for NoiseFunction {
         };
         // Noise has no value where a coordinate is not finite.
         let finite = |b: &Bounds| b.min.is_finite() && b.max.is_finite() && !b.nan;
-        let nan = ![x, y, z].iter().all(finite);
+        let nan = !(finite(&x) && finite(&y) && finite(&z));
         let p = [x, y, z];
+        if let (Kind::Noise, []) = (self.kind, rest) {
+            return noise_within(p, self.generator).with_nan(nan);
+        }
         let mut numbers = [0.0; 6];
         for (number, parameter) in numbers.iter_mut().zip(rest) {
             match parameter.single() {
@@ -143,6 +146,30 @@ impl ScalarField for NoiseFunction {
             (Kind::Generator, _) => Bounds::NAN,
         };
         bounds.with_nan(nan)
+    }
+
+    /// The central differences of all three coordinates, with their bits.
+    fn gradient(&self, arguments: &[f64], partials: &mut [f64]) -> f64 {
+        let (Kind::Noise | Kind::Signed, &[x, y, z], [by_x, by_y, by_z]) =
+            (self.kind, arguments, &mut *partials)
+        else {
+            return central_differences(self, arguments, partials);
+        };
+        let (a, b, c) = (step(x), step(y), step(z));
+        let first = [[x, x + a, x - a, x], [y, y, y, y + b], [z, z, z, z]];
+        let second = [[x, x, x, x], [y - b, y, y, y], [z, z + c, z - c, z]];
+        let mut first_values = noise_of_four(&first, self.generator);
+        let mut second_values = noise_of_four(&second, self.generator);
+        if let Kind::Signed = self.kind {
+            first_values = first_values.map(|value| 2.0 * value - 1.0);
+            second_values = second_values.map(|value| 2.0 * value - 1.0);
+        }
+        let [value, above_x, below_x, above_y] = first_values;
+        let [below_y, above_z, below_z, _] = second_values;
+        *by_x = (above_x - below_x) / ((x + a) - (x - a));
+        *by_y = (above_y - below_y) / ((y + b) - (y - b));
+        *by_z = (above_z - below_z) / ((z + c) - (z - c));
+        value
     }
 
     /// Sums over octaves change so fast that rates hardly ever tell more than bounds of the value.
