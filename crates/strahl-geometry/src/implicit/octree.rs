@@ -159,6 +159,23 @@ struct Found<'a> {
     slot: Slot,
 }
 
+/// A node, the depth of its cells and a place within.
+#[derive(Clone, Copy)]
+struct Around<'a> {
+    node: &'a Node,
+    place: [u32; 3],
+    shift: u32,
+}
+
+impl Around<'_> {
+    #[inline(always)]
+    fn contains(&self, [x, y, z]: [u32; 3]) -> bool {
+        let [a, b, c] = self.place;
+        // A node has four cells along each axis.
+        ((x ^ a) | (y ^ b) | (z ^ c)) >> self.shift < 4
+    }
+}
+
 impl Found<'_> {
     fn side(&self) -> Option<bool> {
         if self.is_full {
@@ -194,11 +211,32 @@ impl Octree {
         cell
     }
 
-    /// The cell around a place, as large as all of it is known to be empty, or one of the smallest.
+    /// The node of the whole tree.
+    fn root(&self) -> Around<'_> {
+        Around {
+            node: &self.root,
+            place: [0; 3],
+            shift: (self.cells.ilog2() - 1) & !1,
+        }
+    }
+
+    /// The cell around a place, as large as all of it is known to be empty, or one of the smallest. `last` is where it was looked for
+    /// the last time.
     #[inline(always)]
-    fn find(&self, place: [u32; 3], visitor: &mut impl Visitor) -> Found<'_> {
-        let mut node = &self.root;
-        let mut shift = (self.cells.ilog2() - 1) & !1;
+    fn find<'a>(
+        &'a self,
+        place: [u32; 3],
+        last: &mut Around<'a>,
+        visitor: &mut impl Visitor,
+    ) -> Found<'a> {
+        if !last.contains(place) {
+            *last = self.root();
+        }
+        let Around {
+            mut node,
+            mut shift,
+            ..
+        } = *last;
         loop {
             let slot = Slot::of(place, shift);
             if node.full.load(Ordering::Relaxed) & slot.bit() != 0 {
@@ -212,6 +250,7 @@ impl Octree {
                 }
                 node = &node.children()[slot.0 as usize];
                 shift -= 2;
+                *last = Around { node, place, shift };
                 continue;
             }
             let empty = node.empty.load(Ordering::Relaxed);
@@ -247,9 +286,10 @@ impl Octree {
         // Rounding must not lead back to a plane that has been crossed.
         let mut least = [0; 3];
         let mut has_begun = false;
+        let mut last = self.root();
         while t < exit && t <= range.max {
             let place = line.place(t, least, self.cells);
-            let found = self.find(line.turned(place), visitor);
+            let found = self.find(line.turned(place), &mut last, visitor);
             if !has_begun {
                 visitor.begin(found.side())?;
                 has_begun = true;
