@@ -64,7 +64,14 @@ impl Subject {
         line: &Crossings,
         scratch: &mut Scratch,
     ) {
-        let simple = ["torus", "polynomial", "superellipsoid", "sor", "lathe"];
+        let simple = [
+            "torus",
+            "polynomial",
+            "superellipsoid",
+            "sor",
+            "lathe",
+            "isosurface",
+        ];
         if !simple.contains(&self.shape.kind()) {
             return;
         }

@@ -229,6 +229,7 @@ impl Leaf {
                 | Shape::Superellipsoid(_)
                 | Shape::Sor(_)
                 | Shape::Lathe(_)
+                | Shape::Isosurface(_)
         );
         self.shape_crossings(&self.ray_to_object(ray), range, from, scratch, out);
         self.contribute(out);

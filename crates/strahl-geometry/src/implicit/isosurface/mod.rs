@@ -162,7 +162,10 @@ impl Isosurface {
 
     /// Bounds of the function less the threshold.
     fn bounds_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Bounds {
-        let values = self.function.bounds(workspace, &sides(cell));
+        self.less_threshold(self.function.bounds(workspace, &sides(cell)))
+    }
+
+    fn less_threshold(&self, values: Bounds) -> Bounds {
         let threshold = self.options.threshold;
         // A difference has the sign of the exact one.
         Bounds {
@@ -172,10 +175,16 @@ impl Isosurface {
         }
     }
 
-    /// Bounds of the derivative of the function along a direction.
-    fn rate_within(&self, workspace: &mut Workspace, cell: &Aabb, direction: DVec3) -> Bounds {
+    /// Bounds of the function less the threshold, as [`Isosurface::bounds_within`], and of its derivative along a direction.
+    fn rate_within(
+        &self,
+        workspace: &mut Workspace,
+        cell: &Aabb,
+        direction: DVec3,
+    ) -> (Bounds, Bounds) {
         let (sides, way) = (sides(cell), direction.to_array());
-        self.function.rate(workspace, &sides, &way).1
+        let (values, rate) = self.function.rate(workspace, &sides, &way);
+        (self.less_threshold(values), rate)
     }
 
     /// What a cell of the octree holds.
@@ -268,6 +277,8 @@ impl Isosurface {
         ControlFlow::Continue(())
     }
 
+    // Inline: what is searched with would be copied.
+    #[inline(always)]
     fn search<'a>(
         &'a self,
         ray: &Ray,
@@ -499,6 +510,9 @@ impl Solid for Isosurface {
                 ControlFlow::Continue(())
             };
             let _ = self.walk(ray, (needed, from), EXACT, scratch, workspace, visit);
+            if out.without_errors {
+                return;
+            }
             for crossing in &mut out.list {
                 if crossing.surface() == SURFACE {
                     crossing.t_error = self.t_error(ray, crossing.hit.t, workspace);

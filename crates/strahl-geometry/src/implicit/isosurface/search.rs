@@ -65,15 +65,17 @@ impl Search<'_> {
         }
         let length = to.s - from.s;
         let is_short = length <= self.shortest;
-        if !changes && self.excludes(from, to, is_short) {
+        let has_rates = self.surface.has_rates && !is_short;
+        // Most parts without a surface are excluded by bounds of the values alone, which take less time than those of the rate, in which
+        // they are contained.
+        if !changes && !(has_rates && is_near_zero(from, to)) && self.excludes(from, to, is_short) {
             return ControlFlow::Continue(());
         }
         let mut is_monotone = false;
-        if self.surface.has_rates && !is_short {
-            // Most parts without a surface are excluded by the values alone, which takes less time.
-            let rate = self.rate(from.s, to.s);
+        if has_rates {
+            let (values, rate) = self.rate(from.s, to.s);
             is_monotone = !rate.nan && (rate.min > 0.0 || rate.max < 0.0);
-            if !changes && stays_away(from, to, rate) {
+            if !changes && (stays_away(from, to, rate) || side(values).is_some()) {
                 return ControlFlow::Continue(());
             }
         }
@@ -116,12 +118,21 @@ impl Search<'_> {
             && from.value.abs() + to.value.abs() > self.slope * (to.s - from.s)
     }
 
-    /// Bounds of the derivative of the function along the ray between two places.
-    fn rate(&mut self, from: f64, to: f64) -> Bounds {
+    /// Bounds of the function, less the threshold, between two places, and of its derivative along the ray.
+    fn rate(&mut self, from: f64, to: f64) -> (Bounds, Bounds) {
         let cell = self.around(from, to);
         self.surface
             .rate_within(self.workspace, &cell, self.direction)
     }
+}
+
+/// Whether a function with values of one sign at two places is so near to zero at one of them that its bounds in between hardly exclude a zero:
+/// they are wider than what it changes by.
+fn is_near_zero(from: Place, to: Place) -> bool {
+    const NEAR: f64 = 0.1;
+    let (a, b) = (from.value.abs(), to.value.abs());
+    let nearest = if a < b { a } else { b };
+    nearest < NEAR * (a - b).abs()
 }
 
 /// Whether a function with values of one sign at two places certainly has no zero in between, because it does not change fast enough: a
