@@ -25,7 +25,12 @@ use strahl_math::DVec2;
 pub struct Font {
     bytes: Vec<u8>,
     glyphs: BTreeMap<u32, Option<Arc<Outline>>>,
+    /// Lines that have been laid out, as the same ones often come again and finding the font's tables takes time.
+    lines: BTreeMap<String, Vec<Letter>>,
 }
+
+/// So many lines are kept.
+const LINES: usize = 256;
 
 /// A letter of a line of text.
 #[derive(Clone, Debug)]
@@ -51,6 +56,7 @@ impl Font {
         Ok(Self {
             bytes,
             glyphs: BTreeMap::new(),
+            lines: BTreeMap::new(),
         })
     }
 
@@ -62,7 +68,19 @@ impl Font {
     /// # Errors
     /// The outline of a letter is broken.
     pub fn lay_out(&mut self, text: &str) -> Result<Vec<Letter>, FontError> {
-        let Self { bytes, glyphs } = self;
+        if let Some(known) = self.lines.get(text) {
+            return Ok(known.clone());
+        }
+        let letters = self.lay_out_anew(text)?;
+        if self.lines.len() >= LINES {
+            self.lines.clear();
+        }
+        self.lines.insert(text.to_owned(), letters.clone());
+        Ok(letters)
+    }
+
+    fn lay_out_anew(&mut self, text: &str) -> Result<Vec<Letter>, FontError> {
+        let Self { bytes, glyphs, .. } = self;
         let font = open(bytes)?;
         let unit = 1.0 / units(&font)?;
         let (charmap, outlines) = (font.charmap(), font.outline_glyphs());
