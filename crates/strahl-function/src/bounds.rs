@@ -228,7 +228,12 @@ impl Bounds {
     #[inline]
     pub(crate) fn mul(self, other: Self) -> Self {
         // The ends of an empty interval are infinite, and so are their products, or NaN.
-        if let Some((min, max)) = self.plain_products(other) {
+        if let Some((min, max)) = outer([
+            self.min * other.min,
+            self.min * other.max,
+            self.max * other.min,
+            self.max * other.max,
+        ]) {
             let nan = self.nan | other.nan;
             return Self { min, max, nan };
         }
@@ -244,25 +249,6 @@ impl Bounds {
         let nan =
             self.has_zero() && other.is_unbounded() || other.has_zero() && self.is_unbounded();
         self.corners(other, mul_down, mul_up).with_nan(nan)
-    }
-
-    /// The least and the largest product of ends, rounded outwards, if none of them is zero, infinite or NaN: the usual case, in which
-    /// rounding the two that count is enough.
-    #[inline(always)]
-    fn plain_products(self, other: Self) -> Option<(f64, f64)> {
-        let (a, b) = (self.min * other.min, self.min * other.max);
-        let (c, d) = (self.max * other.min, self.max * other.max);
-        let size = [a.abs(), b.abs(), c.abs(), d.abs()];
-        let sum = (size[0] + size[2]) + (size[1] + size[3]);
-        let least = less(less(size[0], size[2]), less(size[1], size[3]));
-        // Whatever is not finite shows in the sum.
-        if !(sum < f64::INFINITY && least > 0.0) {
-            return None;
-        }
-        Some((
-            stepped(less(less(a, b), less(c, d)), -1),
-            stepped(greater(greater(a, b), greater(c, d)), 1),
-        ))
     }
 
     #[inline]
@@ -281,7 +267,27 @@ impl Bounds {
         }
     }
 
+    #[inline]
     pub(crate) fn div(self, other: Self) -> Self {
+        // The ends of an empty interval are infinite, and their quotients infinite, zero, or NaN.
+        if let (true, Some((min, max))) = (
+            other.min > 0.0 || other.max < 0.0,
+            outer([
+                self.min / other.min,
+                self.min / other.max,
+                self.max / other.min,
+                self.max / other.max,
+            ]),
+        ) {
+            let nan = self.nan | other.nan;
+            return Self { min, max, nan };
+        }
+        self.div_any(other)
+    }
+
+    /// [`Bounds::div`] in all cases, such as quotients that are zero or not finite.
+    #[inline(never)]
+    fn div_any(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return Self::NAN;
         }
@@ -559,6 +565,23 @@ impl Bounds {
     }
 }
 
+/// The least and the largest of rounded products or quotients, rounded outwards, if none of them is zero, infinite or NaN: the usual case, in
+/// which rounding the two that count is enough.
+#[inline(always)]
+fn outer([a, b, c, d]: [f64; 4]) -> Option<(f64, f64)> {
+    let size = [a.abs(), b.abs(), c.abs(), d.abs()];
+    let sum = (size[0] + size[2]) + (size[1] + size[3]);
+    let least = less(less(size[0], size[2]), less(size[1], size[3]));
+    // Whatever is not finite shows in the sum.
+    if !(sum < f64::INFINITY && least > 0.0) {
+        return None;
+    }
+    Some((
+        stepped(less(less(a, b), less(c, d)), -1),
+        stepped(greater(greater(a, b), greater(c, d)), 1),
+    ))
+}
+
 /// An odd power, or one of a positive number, whose products are rounded away from zero or towards it.
 fn power_end(x: f64, exponent: u8, is_away: bool) -> f64 {
     if x == 0.0 {
@@ -654,6 +677,7 @@ mod tests {
                 assert_same(a.add(b), a.add_any(b), &of);
                 assert_same(a.sub(b), a.add_any(b.neg()), &of);
                 assert_same(a.mul(b), a.mul_any(b), &of);
+                assert_same(a.div(b), a.div_any(b), &of);
                 if a.is_empty() || b.is_empty() || a.nan || b.nan {
                     continue;
                 }

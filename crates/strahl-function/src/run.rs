@@ -110,7 +110,15 @@ fn call<T: Domain>(
     run(function.tape(), stack, fuel)
 }
 
+#[inline]
 fn gather<T: Domain>(registers: &[T], from: &[u32], to: &mut [T]) {
+    // A point in space, without a loop.
+    if let (&[a, b, c], [x, y, z, ..]) = (from, &mut *to) {
+        *x = registers[a as usize];
+        *y = registers[b as usize];
+        *z = registers[c as usize];
+        return;
+    }
     for (to, &from) in to.iter_mut().zip(from) {
         *to = registers[from as usize];
     }

@@ -114,16 +114,16 @@ impl ScalarField for NoiseFunction {
     }
 
     fn bounds(&self, arguments: &[Bounds]) -> Bounds {
+        if let (Kind::Noise, &[x, y, z]) = (self.kind, arguments) {
+            let mut bounds = noise_within([x, y, z], self.generator);
+            bounds.nan = !(is_finite(&x) && is_finite(&y) && is_finite(&z));
+            return bounds;
+        }
         let (&[x, y, z, ref rest @ ..], true) = (arguments, arguments.len() == self.arity()) else {
             return Bounds::NAN;
         };
-        // Noise has no value where a coordinate is not finite.
-        let finite = |b: &Bounds| b.min.is_finite() && b.max.is_finite() && !b.nan;
-        let nan = !(finite(&x) && finite(&y) && finite(&z));
+        let nan = ![x, y, z].iter().all(is_finite);
         let p = [x, y, z];
-        if let (Kind::Noise, []) = (self.kind, rest) {
-            return noise_within(p, self.generator).with_nan(nan);
-        }
         let mut numbers = [0.0; 6];
         for (number, parameter) in numbers.iter_mut().zip(rest) {
             match parameter.single() {
@@ -179,7 +179,6 @@ impl ScalarField for NoiseFunction {
 
     fn rate(&self, arguments: &[Bounds], rates: &[Bounds]) -> (Bounds, Bounds) {
         let unknown = || (self.bounds(arguments), Bounds::UNKNOWN);
-        let finite = |b: &Bounds| b.min.is_finite() && b.max.is_finite() && !b.nan;
         let (&[x, y, z, ref rest @ ..], &[p, q, r, ..]) = (arguments, rates) else {
             return unknown();
         };
@@ -188,7 +187,7 @@ impl ScalarField for NoiseFunction {
             (Kind::Generator, [number]) => number.single().map(numbered),
             _ => None,
         };
-        let Some(generator) = generator.filter(|_| [x, y, z, p, q, r].iter().all(finite)) else {
+        let Some(generator) = generator.filter(|_| [x, y, z, p, q, r].iter().all(is_finite)) else {
             return unknown();
         };
         let min = DVec3::new(x.min, y.min, z.min);
@@ -201,6 +200,11 @@ impl ScalarField for NoiseFunction {
             _ => (value, rate),
         }
     }
+}
+
+/// Whether all numbers within bounds are finite: noise has no value where a coordinate is not.
+fn is_finite(b: &Bounds) -> bool {
+    b.min.is_finite() && b.max.is_finite() && !b.nan
 }
 
 /// Bounds of the noise over a box.
