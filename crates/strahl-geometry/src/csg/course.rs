@@ -145,13 +145,26 @@ impl Search<'_> {
     ) -> Result<bool, TooClose> {
         let csg = self.csg;
         let Some(hierarchy) = &node.hierarchy else {
+            if window.min > f64::NEG_INFINITY {
+                return self.add_later(index, window, sum);
+            }
             for i in node.core..node.end {
                 let operand = csg.operand(i).unwrap_or_default();
-                let quick = csg.node(operand).is_some_and(|n| n.quick);
+                let Some(node) = csg.node(operand) else {
+                    return Err(TooClose);
+                };
                 // Quick operands belong to the first window.
-                if (!quick || window.min == f64::NEG_INFINITY)
-                    && self.add_operand(operand, index, quick, window, alive, sum)?
-                {
+                if !node.quick {
+                    let Some(within) = self.clip(node, alive) else {
+                        continue;
+                    };
+                    if !window.accepts(within.min) {
+                        self.lists.later.push((operand, within.min));
+                        continue;
+                    }
+                }
+                let course = self.met(operand, node, index, sum.alive)?;
+                if sum.add(course, &self.fusing) {
                     return Ok(true);
                 }
             }
@@ -202,6 +215,29 @@ impl Search<'_> {
         }
         let course = self.met(operand, node, parent, sum.alive)?;
         Ok(sum.add(course, &self.fusing))
+    }
+
+    /// Combines the operands without a hierarchy that the first window has left and that begin in this one.
+    fn add_later(
+        &mut self,
+        parent: u32,
+        window: Interval,
+        sum: &mut Sum,
+    ) -> Result<bool, TooClose> {
+        for i in 0..self.lists.later.len() {
+            let (operand, enter) = self.lists.later[i];
+            if !window.accepts(enter) {
+                continue;
+            }
+            let Some(node) = self.csg.node(operand) else {
+                return Err(TooClose);
+            };
+            let course = self.met(operand, node, parent, sum.alive)?;
+            if sum.add(course, &self.fusing) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     fn leaf(&mut self, index: u32, parent: u32, range: Interval) -> Result<Course, TooClose> {

@@ -32,6 +32,8 @@ pub(super) struct Lists {
     pub(super) timeline: Timeline,
     /// The operands found by hierarchies, operation by operation.
     pub(super) candidates: Vec<u32>,
+    /// The root's operands whose boxes begin behind the first window, and where they begin.
+    pub(super) later: Vec<(u32, f64)>,
 }
 
 /// The search of one ray for the first surface of one tree.
@@ -113,6 +115,7 @@ impl<'a> Search<'a> {
         }
         lists.timeline.clear(csg.node_count());
         lists.candidates.clear();
+        lists.later.clear();
         Some(Self {
             csg,
             ray,

@@ -115,10 +115,9 @@ pub(super) trait OrbitSet: Sized {
         &self,
         ray: &Ray,
         (range, from): (Interval, Option<SurfaceId>),
-        scratch: &mut Scratch,
         mut visit: impl FnMut(Event) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let Some(passage) = self.search().around.passage(ray, None, scratch) else {
+        let Some(passage) = self.search().around.passage(ray, None) else {
             return ControlFlow::Continue(());
         };
         let (enter, exit) = (passage.start(), passage.exit.hit.t);
@@ -214,11 +213,11 @@ pub(super) trait OrbitSet: Sized {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         let mut closest = None;
         // The result only matters while visiting.
-        let _ = self.walk(ray, (range, from), scratch, |event| match event {
+        let _ = self.walk(ray, (range, from), |event| match event {
             Event::Crossing { t, surface, .. } if surface == SURFACE && range.accepts(t) => {
                 closest = Some(PrimHit::simple(t, SURFACE.facet));
                 ControlFlow::Break(())
@@ -273,7 +272,7 @@ pub(super) trait OrbitSet: Sized {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
         let start = if from.is_some() && range.min < 0.0 {
@@ -282,7 +281,7 @@ pub(super) trait OrbitSet: Sized {
             range.min
         };
         let needed = Interval::new(start, range.max);
-        let _ = self.walk(ray, (needed, from), scratch, |event| {
+        let _ = self.walk(ray, (needed, from), |event| {
             match event {
                 Event::Start { inside } => out.inside_at_start = inside,
                 Event::Crossing { t, enters, .. } if t <= start => out.inside_at_start = enters,

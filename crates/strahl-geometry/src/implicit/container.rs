@@ -1,5 +1,6 @@
+use crate::primitives::convex::{End, Span, start_of};
 use crate::{
-    Crossing, Cuboid, GeometryError, PrimHit, Scratch, Solid, Sphere, SurfaceId, SurfacePoint,
+    Crossing, Cuboid, GeometryError, PrimHit, Side, Solid, Sphere, SurfaceId, SurfacePoint,
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
@@ -76,26 +77,29 @@ impl Container {
     }
 
     /// The part of a ray inside; `from` names the facet of the container on which the ray starts.
-    pub(crate) fn passage(
-        &self,
-        ray: &Ray,
-        from: Option<u32>,
-        scratch: &mut Scratch,
-    ) -> Option<Passage> {
+    pub(crate) fn passage(&self, ray: &Ray, from: Option<u32>) -> Option<Passage> {
         let from = from.map(|facet| SurfaceId { element: 0, facet });
-        let mut list = scratch.take();
-        let solid = self.solid();
-        solid.crossings(ray, Interval::LINE, from, scratch, &mut list);
-        let passage = match (list.inside_at_start, list.list.as_slice()) {
-            (true, &[exit]) => Some(Passage { enter: None, exit }),
-            (false, &[enter, exit]) => Some(Passage {
-                enter: Some(enter),
-                exit,
-            }),
-            _ => None,
+        let Span { enter, exit } = match self {
+            Self::Sphere(sphere) => sphere.span(ray, from),
+            Self::Box(cuboid) => cuboid.span(ray, from),
+        }?;
+        let crossing = |end: End, side| {
+            let error = match self {
+                Self::Sphere(sphere) => sphere.t_error(ray, end.t),
+                Self::Box(cuboid) => cuboid.t_error(ray, end),
+            };
+            Crossing::new(PrimHit::simple(end.t, end.facet), error, side)
         };
-        scratch.give(list);
-        passage
+        // As `Solid::crossings` lists them.
+        let start = start_of(Interval::LINE, from);
+        let starts_inside = enter.t <= start && start < exit.t;
+        if !(exit.t > start && exit.t.is_finite()) || !(starts_inside || enter.t.is_finite()) {
+            return None;
+        }
+        Some(Passage {
+            enter: (!starts_inside).then(|| crossing(enter, Side::Enter)),
+            exit: crossing(exit, Side::Exit),
+        })
     }
 
     /// The surface at a hit on the container.

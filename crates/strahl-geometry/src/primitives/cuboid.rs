@@ -136,6 +136,14 @@ impl Cuboid {
         (valid && span.enter.t < span.exit.t && span.enter.t.is_finite()).then_some(span)
     }
 
+    /// The error of the parameter of an end of a span.
+    pub(crate) fn t_error(&self, ray: &Ray, end: End) -> f64 {
+        let axis = (end.facet / 2).min(2) as usize;
+        let (o, d) = (ray.origin[axis], ray.direction[axis]);
+        let plane = self.min[axis].abs() + self.max[axis].abs();
+        gamma(8) * ((o.abs() + plane) / d.abs() + end.t.abs())
+    }
+
     /// [`Cuboid::span`] of rays that are parallel to a face.
     #[inline(never)]
     fn span_along_faces(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
@@ -318,13 +326,7 @@ impl Solid for Cuboid {
         let Some(span) = self.span(ray, from) else {
             return;
         };
-        let t_error = |end: End| {
-            let axis = (end.facet / 2).min(2) as usize;
-            let (o, d) = (ray.origin[axis], ray.direction[axis]);
-            let plane = self.min[axis].abs() + self.max[axis].abs();
-            gamma(8) * ((o.abs() + plane) / d.abs() + end.t.abs())
-        };
-        span.list(range, from, t_error, out);
+        span.list(range, from, |end| self.t_error(ray, end), out);
     }
 
     fn contains(&self, point: DVec3) -> bool {

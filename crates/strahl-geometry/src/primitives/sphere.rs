@@ -131,7 +131,7 @@ impl Sphere {
 
     /// The error of the parameter of a hit: the error of the point on the ray, divided by the speed at which the ray crosses
     /// the surface; near a tangent the error grows to the square root.
-    fn t_error(&self, ray: &Ray, t: f64) -> f64 {
+    pub(crate) fn t_error(&self, ray: &Ray, t: f64) -> f64 {
         let r = self.radius.abs();
         let f = ray.origin - self.center;
         let speed = ray.direction.length();

@@ -234,12 +234,11 @@ impl Isosurface {
         ray: &Ray,
         (range, from): (Interval, Option<SurfaceId>),
         rough: Interval,
-        scratch: &mut Scratch,
         workspace: &mut Workspace,
         visit: &mut impl FnMut(Event) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let on_container = from.and_then(|surface| surface.facet.checked_sub(1));
-        let Some(passage) = self.container.passage(ray, on_container, scratch) else {
+        let Some(passage) = self.container.passage(ray, on_container) else {
             return ControlFlow::Continue(());
         };
         let (mut start, end) = (passage.start(), passage.exit.hit.t);
@@ -436,13 +435,13 @@ impl Primitive for Isosurface {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         let mut closest = None;
         with_workspace(|workspace| {
             // The result only matters while visiting.
             let visit = &mut |event| first_hit(event, range, &mut closest);
-            let _ = self.walk(ray, (range, from), EXACT, scratch, workspace, visit);
+            let _ = self.walk(ray, (range, from), EXACT, workspace, visit);
         });
         closest
     }
@@ -452,12 +451,12 @@ impl Primitive for Isosurface {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
     ) -> bool {
         let mut any = None;
         with_workspace(|workspace| {
             let visit = &mut |event| first_hit(event, range, &mut any);
-            let _ = self.walk(ray, (range, from), range, scratch, workspace, visit);
+            let _ = self.walk(ray, (range, from), range, workspace, visit);
         });
         any.is_some()
     }
@@ -488,7 +487,7 @@ impl Solid for Isosurface {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
         let start = if from.is_some() && range.min < 0.0 {
@@ -509,7 +508,7 @@ impl Solid for Isosurface {
                 }
                 ControlFlow::Continue(())
             };
-            let _ = self.walk(ray, (needed, from), EXACT, scratch, workspace, visit);
+            let _ = self.walk(ray, (needed, from), EXACT, workspace, visit);
             if out.without_errors {
                 return;
             }
