@@ -11,7 +11,7 @@ use crate::graph::{Expr, Graph};
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_math::det;
-use strahl_math::noise::{NoiseGenerator, noise, noise_bounds, noise_of_four, noise_rate};
+use strahl_math::noise::{NoiseGenerator, noise, noise_bounds, noise_of_neighbours, noise_rate};
 
 pub(super) const TABLE: &[Internal] = &[
     row("f_noise3d", 0, Kind::Noise),
@@ -158,14 +158,14 @@ impl ScalarField for NoiseFunction {
         let (a, b, c) = (step(x), step(y), step(z));
         let first = [[x, x + a, x - a, x], [y, y, y, y + b], [z, z, z, z]];
         let second = [[x, x, x, x], [y - b, y, y, y], [z, z + c, z - c, z]];
-        let mut first_values = noise_of_four(&first, self.generator);
-        let mut second_values = noise_of_four(&second, self.generator);
+        let [mut first, mut second] = noise_of_neighbours(&[first, second], self.generator);
         if let Kind::Signed = self.kind {
-            first_values = first_values.map(|value| 2.0 * value - 1.0);
-            second_values = second_values.map(|value| 2.0 * value - 1.0);
+            for value in first.iter_mut().chain(&mut second) {
+                *value = 2.0 * *value - 1.0;
+            }
         }
-        let [value, above_x, below_x, above_y] = first_values;
-        let [below_y, above_z, below_z, _] = second_values;
+        let [value, above_x, below_x, above_y] = first;
+        let [below_y, above_z, below_z, _] = second;
         *by_x = (above_x - below_x) / ((x + a) - (x - a));
         *by_y = (above_y - below_y) / ((y + b) - (y - b));
         *by_z = (above_z - below_z) / ((z + c) - (z - c));

@@ -70,6 +70,28 @@ pub fn noise_of_four(points: &[[f64; 4]; 3], generator: NoiseGenerator) -> [f64;
     })
 }
 
+/// [`noise`] at eight points, whose coordinates are given four by four and axis by axis, with the same bits. Points that are all in one cell of
+/// the lattice, as those of which the differences are a gradient, take little more time than one.
+pub fn noise_of_neighbours(
+    points: &[[[f64; 4]; 3]; 2],
+    generator: NoiseGenerator,
+) -> [[f64; 4]; 2] {
+    dispatch!(Simd::best(), isa => neighbours_with(isa, points, generator))
+}
+
+#[inline(always)]
+fn neighbours_with<I: Isa>(
+    isa: I,
+    points: &[[[f64; 4]; 3]; 2],
+    generator: NoiseGenerator,
+) -> [[f64; 4]; 2] {
+    let [[a, b, c], [d, e, f]] = points;
+    let first = [isa.load(a), isa.load(b), isa.load(c)];
+    let second = [isa.load(d), isa.load(e), isa.load(f)];
+    let [p, q] = kernel::noise_of_neighbours(isa, [first, second], generator);
+    [isa.store(p), isa.store(q)]
+}
+
 /// Vector noise at `p`: three independent value-gradient noises, each with a mean near zero and seldom beyond ±1.
 ///
 /// The same for every [`NoiseGenerator`]; what turbulence displaces points by.

@@ -536,3 +536,37 @@ fn four_points_have_the_same_bits_on_all_levels() {
         }
     }
 }
+
+#[test]
+fn neighbours_have_the_noise_of_points() {
+    for i in 0..4000 {
+        let t = f64::from(i);
+        // Within a cell, across its border, in cells far from each other, and beyond the range of integers.
+        let size = [6e-6, 0.1, 1.0, 1e7][i as usize % 4] * if i % 97 == 0 { 1e4 } else { 1.0 };
+        let lanes = |a: f64| [0.0, 1.0, 2.0, 3.0].map(|k| a * t + (k - 1.5) * size);
+        let points = [
+            [lanes(0.31), lanes(-0.77), lanes(1.13)],
+            [
+                lanes(0.31),
+                lanes(-0.77),
+                lanes(1.13).map(|z| z + 0.5 * size),
+            ],
+        ];
+        for generator in [
+            NoiseGenerator::Original,
+            NoiseGenerator::RangeCorrected,
+            NoiseGenerator::Perlin,
+        ] {
+            let alone = points.map(|half| {
+                [0, 1, 2, 3].map(|lane| {
+                    noise(DVec3::from_array(half.map(|x| x[lane])), generator).to_bits()
+                })
+            });
+            for simd in Simd::available() {
+                let found = dispatch!(simd, isa => neighbours_with(isa, &points, generator));
+                let found = found.map(|half| half.map(f64::to_bits));
+                assert_eq!(found, alone, "{} {points:?}", simd.level());
+            }
+        }
+    }
+}
