@@ -68,7 +68,8 @@ impl Search<'_> {
         let has_rates = self.surface.has_rates && !is_short;
         // Most parts without a surface are excluded by bounds of the values alone, which take less time than those of the rate, in which
         // they are contained.
-        if !changes && !(has_rates && is_near_zero(from, to)) && self.excludes(from, to, is_short) {
+        let is_left_out = changes || has_rates && is_near_zero(from, to);
+        if !is_left_out && self.excludes(from, to, is_short) {
             return ControlFlow::Continue(());
         }
         let mut is_monotone = false;
