@@ -158,7 +158,7 @@ impl Search<'_> {
                     let Some(within) = self.clip(node, alive) else {
                         continue;
                     };
-                    if !window.accepts(within.min) {
+                    if within.min > window.max {
                         self.lists.later.push((operand, within.min));
                         continue;
                     }
