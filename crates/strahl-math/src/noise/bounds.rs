@@ -215,10 +215,24 @@ fn in_cell<I: Isa>(
         let off = along(isa, sizes, reach);
         at[z] = (isa.sub(middle, off), isa.add(middle, off));
         if let Some([x, y, z_way]) = way {
-            let mid = |r: &Range| isa.splat(0.5 * (r.0 + r.1));
-            let half = |r: &Range| isa.splat(0.5 * (r.1 - r.0));
-            let middle = along(isa, [gx, gy, gz], [mid(x), mid(y), mid(z_way)]);
-            let off = along(isa, sizes, [half(x), half(y), half(z_way)]);
+            let middle = along(
+                isa,
+                [gx, gy, gz],
+                [
+                    isa.splat(0.5 * (x.0 + x.1)),
+                    isa.splat(0.5 * (y.0 + y.1)),
+                    isa.splat(0.5 * (z_way.0 + z_way.1)),
+                ],
+            );
+            let off = along(
+                isa,
+                sizes,
+                [
+                    isa.splat(0.5 * (x.1 - x.0)),
+                    isa.splat(0.5 * (y.1 - y.0)),
+                    isa.splat(0.5 * (z_way.1 - z_way.0)),
+                ],
+            );
             rates[z] = (isa.sub(middle, off), isa.add(middle, off));
         }
     }
