@@ -7,6 +7,7 @@ use crate::function::Function;
 use crate::limits;
 use crate::op::{BinaryOp, UnaryOp};
 use std::collections::{HashMap, HashSet};
+use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
 /// A value within a [`Graph`]: a handle, cheap to copy.
@@ -74,7 +75,7 @@ pub struct Graph {
     functions: Vec<Function>,
     function_index: HashMap<usize, u32>,
     /// The loop variables a node depends on that no loop within it binds, ascending; absent for most.
-    free: HashMap<Expr, Box<[u32]>>,
+    free: NodeMap<Box<[u32]>>,
     /// How deep loops and calls are nested in each node.
     depth: Vec<u32>,
     variables: u32,
@@ -156,7 +157,7 @@ impl Graph {
         self.list_index = HashMap::new();
         self.field_index = HashMap::new();
         self.function_index = HashMap::new();
-        self.free = HashMap::new();
+        self.free = NodeMap::default();
         self.depth = Vec::new();
         self.nodes.shrink_to_fit();
     }
@@ -505,7 +506,7 @@ impl Graph {
     /// All nodes an expression needs, operands first. Nodes are only ever made after their operands, so that is by number.
     pub(crate) fn reachable(&self, root: Expr) -> Vec<Expr> {
         // Not an array of marks for all nodes, because the query may be small in a large graph, and frequent.
-        let mut seen = HashSet::new();
+        let mut seen = NodeSet::default();
         let mut stack = vec![root];
         let mut found = Vec::new();
         while let Some(e) = stack.pop() {
@@ -519,3 +520,28 @@ impl Graph {
         found
     }
 }
+
+/// The hash of a node's number. Nodes are numbered one after the other, so hardly any hashes are alike.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct NodeHasher(u64);
+
+impl Hasher for NodeHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_u32(u32::from(byte));
+        }
+    }
+
+    fn write_u32(&mut self, number: u32) {
+        self.0 = (self.0 ^ u64::from(number)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}
+
+/// What is known of nodes.
+pub(crate) type NodeMap<T> = HashMap<Expr, T, BuildHasherDefault<NodeHasher>>;
+/// A set of nodes.
+type NodeSet = HashSet<Expr, BuildHasherDefault<NodeHasher>>;

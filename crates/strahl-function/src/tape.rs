@@ -3,9 +3,8 @@
 use crate::error::FunctionError;
 use crate::field::ScalarField;
 use crate::function::Function;
-use crate::graph::{Expr, Graph, Loop, Node};
+use crate::graph::{Expr, Graph, Loop, Node, NodeMap};
 use crate::op::{BinaryOp, UnaryOp};
-use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -193,11 +192,11 @@ fn rounds(from: f64, to: f64) -> u64 {
 }
 
 /// What a loop's body needs from outside of it.
-type Captures = HashMap<Expr, Vec<Expr>>;
+type Captures = NodeMap<Vec<Expr>>;
 
 /// Compiles the whole function.
 pub(crate) fn compile(graph: &Graph, root: Expr) -> Result<Tape, FunctionError> {
-    let mut captures = Captures::new();
+    let mut captures = Captures::default();
     // A loop comes after those within it, so what the inner ones need is known.
     for e in graph.reachable(root) {
         if let Node::Loop(l) = graph.node(e) {
@@ -205,7 +204,7 @@ pub(crate) fn compile(graph: &Graph, root: Expr) -> Result<Tape, FunctionError> 
             captures.insert(e, outside);
         }
     }
-    let mut inputs = HashMap::new();
+    let mut inputs = NodeMap::default();
     for e in graph.reachable(root) {
         if let Node::Parameter(i) = graph.node(e) {
             inputs.insert(e, i);
@@ -247,7 +246,7 @@ fn frame(graph: &Graph, root: Expr, variable: Option<u32>, captures: &Captures) 
         nodes: Vec::new(),
         captured: Vec::new(),
     };
-    let mut seen: HashMap<Expr, ()> = HashMap::new();
+    let mut seen: NodeMap<()> = NodeMap::default();
     let mut stack = vec![root];
     while let Some(e) = stack.pop() {
         if seen.insert(e, ()).is_some() {
@@ -270,7 +269,7 @@ fn assemble(
     graph: &Graph,
     root: Expr,
     variable: Option<u32>,
-    mut register: HashMap<Expr, u32>,
+    mut register: NodeMap<u32>,
     inputs: usize,
     captures: &Captures,
 ) -> Result<Tape, FunctionError> {
@@ -291,7 +290,7 @@ fn assemble(
     }
     let fixed = inputs + tape.constants.len();
     // The instruction after which a value is not needed any more.
-    let mut last_use: HashMap<Expr, usize> = HashMap::new();
+    let mut last_use: NodeMap<usize> = NodeMap::default();
     for (i, &e) in nodes.iter().enumerate() {
         for operand in operands(graph, e, captures) {
             last_use.insert(operand, i);
@@ -408,7 +407,7 @@ fn assemble_body(
     outside: &[Expr],
     captures: &Captures,
 ) -> Result<Tape, FunctionError> {
-    let mut inputs: HashMap<Expr, u32> = HashMap::new();
+    let mut inputs: NodeMap<u32> = NodeMap::default();
     for (i, &e) in outside.iter().enumerate() {
         inputs.insert(e, i as u32 + 1);
     }
