@@ -185,6 +185,23 @@ pub(crate) struct FourSpans {
     pub(crate) exit_leaf: [u32; LANES],
 }
 
+impl FourSpans {
+    /// The span of a lane that has one.
+    #[inline(always)]
+    pub(crate) fn span(&self, lane: usize) -> Span {
+        Span {
+            enter: End {
+                t: self.enter[lane],
+                facet: self.enter_facet[lane],
+            },
+            exit: End {
+                t: self.exit[lane],
+                facet: self.exit_facet[lane],
+            },
+        }
+    }
+}
+
 /// A convex solid that finds the spans of four lines at once.
 pub(crate) trait FourLines {
     /// The spans of lines that don't start on the solid.
@@ -275,16 +292,7 @@ impl PacketSpans {
         if spans.met >> lane & 1 == 0 {
             return Some(None);
         }
-        let span = Span {
-            enter: End {
-                t: spans.enter[lane],
-                facet: spans.enter_facet[lane],
-            },
-            exit: End {
-                t: spans.exit[lane],
-                facet: spans.exit_facet[lane],
-            },
-        };
+        let span = spans.span(lane);
         Some(match shape {
             Shape::Cylinder(solid) => solid.frustum().closest_within(&span, range),
             Shape::Cone(solid) => solid.frustum().closest_within(&span, range),

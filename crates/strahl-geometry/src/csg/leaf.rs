@@ -222,15 +222,7 @@ impl Leaf {
         out: &mut Crossings,
     ) {
         // Not for shapes that are made of others, which they may compare.
-        out.without_errors = matches!(
-            self.shape,
-            Shape::Torus(_)
-                | Shape::Polynomial(_)
-                | Shape::Superellipsoid(_)
-                | Shape::Sor(_)
-                | Shape::Lathe(_)
-                | Shape::Isosurface(_)
-        );
+        out.without_errors = self.is_listed() || matches!(self.shape, Shape::Isosurface(_));
         self.shape_crossings(&self.ray_to_object(ray), range, from, scratch, out);
         self.contribute(out);
     }

@@ -464,6 +464,24 @@ pub(super) mod tests {
         node.transformed(Transform::rotate(random.direction(), random.unit() * 6.0).then(&stretch))
     }
 
+    /// Rays at trees of such operands, and some that are no lines.
+    pub(in super::super) fn rays(random: &mut Random, lattice: bool) -> Vec<Ray> {
+        (0..PACKET)
+            .map(|k| {
+                let origin = random.cube() * 4.0;
+                let mut direction = random.cube() * 0.9 - origin;
+                match k {
+                    3 => direction.x = 0.0,
+                    5 if lattice => direction = DVec3::Y,
+                    11 => direction = DVec3::ZERO,
+                    13 => direction.z = f64::NAN,
+                    _ => {}
+                }
+                Ray::new(origin, direction)
+            })
+            .collect()
+    }
+
     fn tree(random: &mut Random, lattice: bool) -> Shape {
         let count = 2 + random.below(3) as u32;
         let mut operands: Vec<CsgNode> = (0..count)
@@ -493,20 +511,7 @@ pub(super) mod tests {
             if !PacketSpans::know(&shape) {
                 continue;
             }
-            let rays: Vec<Ray> = (0..PACKET)
-                .map(|k| {
-                    let origin = random.cube() * 4.0;
-                    let mut direction = random.cube() * 0.9 - origin;
-                    match k {
-                        3 => direction.x = 0.0,
-                        5 if lattice => direction = DVec3::Y,
-                        11 => direction = DVec3::ZERO,
-                        13 => direction.z = f64::NAN,
-                        _ => {}
-                    }
-                    Ray::new(origin, direction)
-                })
-                .collect();
+            let rays = rays(&mut random, lattice);
             let packet = PacketRays::new(&rays);
             let turn = Transform::rotate(DVec3::new(1.0, 2.0, 0.5), random.unit());
             let map = (round % 3 == 1).then_some(&turn);

@@ -98,16 +98,7 @@ impl FourStays {
         let has = |lanes: u32| lanes >> lane & 1 == 1;
         let spans = &self.spans;
         has(spans.known).then(|| Stay {
-            span: has(spans.met).then(|| Span {
-                enter: End {
-                    t: spans.enter[lane],
-                    facet: spans.enter_facet[lane],
-                },
-                exit: End {
-                    t: spans.exit[lane],
-                    facet: spans.exit_facet[lane],
-                },
-            }),
+            span: has(spans.met).then(|| spans.span(lane)),
             outside: has(self.outside),
         })
     }

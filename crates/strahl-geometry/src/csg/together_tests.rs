@@ -1,6 +1,6 @@
 //! Packets find in trees what single rays find there.
 
-use super::packet::tests::operand;
+use super::packet::tests::{operand, rays};
 use super::{Csg, CsgNode, PacketRanges, PacketTree};
 use crate::conformance::Random;
 use crate::{PrimHit, Primitive, Scratch, Torus};
@@ -100,20 +100,7 @@ fn packets_find_in_trees_what_single_rays_find() {
         }
         let turn = Transform::rotate(DVec3::new(1.0, 2.0, 0.5), random.unit());
         let map = (round % 3 == 1).then_some(&turn);
-        let rays: Vec<Ray> = (0..PACKET)
-            .map(|k| {
-                let origin = random.cube() * 4.0;
-                let mut direction = random.cube() * 0.9 - origin;
-                match k {
-                    3 => direction.x = 0.0,
-                    5 if lattice => direction = DVec3::Y,
-                    11 => direction = DVec3::ZERO,
-                    13 => direction.z = f64::NAN,
-                    _ => {}
-                }
-                Ray::new(origin, direction)
-            })
-            .collect();
+        let rays = rays(&mut random, lattice);
         let range = match round % 5 {
             0 => Interval::LINE,
             1 => Interval::new(0.9, 1.1),
