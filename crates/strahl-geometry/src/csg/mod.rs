@@ -11,7 +11,8 @@
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
 //!   matter, `timeline` goes through them. `small` does the same for trees of a few simple leaves,
 //!   with a `table` of their `states`, `one_span` for intersections and `merged` for merges among them; `packet` searches
-//!   those of convex solids for four rays side by side, `together` larger ones and merges for the rays of a packet.
+//!   those of convex solids for four rays side by side, `together` tests boxes and leaves of larger ones and of merges for the rays of a packet,
+//!   `lines` combines them ray by ray.
 
 mod boxes;
 mod compile;
@@ -20,6 +21,7 @@ mod evaluate;
 mod first;
 mod half_spaces;
 mod leaf;
+mod lines;
 mod merged;
 mod one_span;
 mod packet;

@@ -4,27 +4,24 @@
 //! [`first`](super::first) crossings that could coincide are left to the general evaluation, so both give the same bits.
 
 use super::Csg;
+use super::boxes::FourSlabs;
 use super::leaf::Leaf;
-use super::packet::FourFusing;
+use super::lines::{Line, Search};
 use super::small::Query;
 use super::solid::{Kind, Node};
 use super::sweep::Rule;
 use super::timeline::TooClose;
 use crate::blocks::LANES;
-use crate::blocks::convex::{FourRays, FourSpans, GROUPS, sub};
-use crate::primitives::convex::{End, Span, Stay};
-use crate::{PrimHit, Scratch, Side, SurfaceId};
-use arrayvec::ArrayVec;
+use crate::blocks::convex::{FourRays, FourSpans, GROUPS};
+use crate::primitives::convex::Stay;
+use crate::{PrimHit, Scratch, SurfaceId};
 use std::ops::ControlFlow;
 use strahl_accel::PACKET;
-use strahl_math::{Aabb, Interval, Ray, Transform};
+use strahl_math::{Interval, Ray, Transform};
 use strahl_simd::{Isa, Simd, dispatch};
 
 /// The most leaves of a tree: what is known of a leaf takes some hundred bytes.
 const MOST_LEAVES: usize = 32;
-
-/// The most ends of the spans of a node; with more the search with one ray decides.
-const MOST_ENDS: usize = 8;
 
 impl Csg {
     /// Whether trees of these nodes are searched by [`PacketTree`].
@@ -238,6 +235,12 @@ impl PacketTree {
         }
     }
 
+    /// Whether the ray at a place may meet the surface of a node.
+    #[inline(always)]
+    pub(super) fn may_meet(&self, node: u32, place: usize) -> bool {
+        self.nodes[node as usize] >> place & 1 == 1
+    }
+
     /// Where the ray at a place is inside of a leaf's shape, if that is known and the ray does not start on it.
     #[inline(always)]
     pub(super) fn stay(&self, leaf: u32, place: usize) -> Option<Stay> {
@@ -306,7 +309,7 @@ impl PacketTree {
         let Some(query) = Query::new(ray, range, from) else {
             return Ok(());
         };
-        if self.nodes.first().is_none_or(|root| root >> place & 1 == 0) {
+        if !self.may_meet(0, place) {
             return match csg.node(0) {
                 Some(root) if !root.far => Ok(()),
                 _ => Err(TooClose),
@@ -353,292 +356,4 @@ impl PacketTree {
         }
         Ok(())
     }
-}
-
-/// Where a ray is inside of a node: whether it is inside where it begins, and where it enters and leaves further on.
-#[derive(Debug, Default)]
-struct Line {
-    inside: bool,
-    ends: ArrayVec<LineEnd, MOST_ENDS>,
-}
-
-/// An end of a span.
-#[derive(Clone, Copy, Debug)]
-struct LineEnd {
-    t: f64,
-    leaf: u32,
-    element: u32,
-    facet: u32,
-}
-
-impl Line {
-    /// The state of a line that is the same everywhere.
-    #[inline(always)]
-    fn constant(&self) -> Option<bool> {
-        self.ends.is_empty().then_some(self.inside)
-    }
-
-    #[inline(always)]
-    fn set(&mut self, inside: bool) {
-        self.inside = inside;
-        self.ends.clear();
-    }
-}
-
-/// The search of one ray for the spans of a tree's nodes.
-struct Search<'a> {
-    csg: &'a Csg,
-    tree: &'a PacketTree,
-    place: usize,
-    query: &'a Query<'a>,
-    scratch: &'a mut Scratch,
-}
-
-impl Search<'_> {
-    /// Where the ray is inside of a node.
-    fn node(&mut self, index: u32, out: &mut Line) -> Result<(), TooClose> {
-        let Some(node) = self.csg.node(index) else {
-            return Err(TooClose);
-        };
-        if self.tree.nodes[index as usize] >> self.place & 1 == 0 {
-            out.set(node.far);
-            return Ok(());
-        }
-        match node.kind {
-            Kind::Leaf(number) => self.leaf(number, out),
-            Kind::Operation(rule) => self.operation(node, rule, out),
-        }
-    }
-
-    fn operation(&mut self, node: &Node, rule: Rule, out: &mut Line) -> Result<(), TooClose> {
-        out.set(rule.neutral());
-        let mut operand = Line::default();
-        for place in node.first..node.end {
-            let number = self.csg.operand(place).unwrap_or_default();
-            if out.ends.is_empty() {
-                self.node(number, out)?;
-            } else {
-                self.node(number, &mut operand)?;
-                match operand.constant() {
-                    None => self.query.combine(rule, out, &operand)?,
-                    Some(inside) if inside == rule.neutral() => {}
-                    Some(inside) => out.set(inside),
-                }
-            }
-            if out.constant() == Some(!rule.neutral()) {
-                return Ok(());
-            }
-        }
-        Ok(())
-    }
-
-    fn leaf(&mut self, number: u32, out: &mut Line) -> Result<(), TooClose> {
-        let Some(leaf) = self.csg.leaf(number) else {
-            return Err(TooClose);
-        };
-        let own = self.query.own(number);
-        if !leaf.has_stays() {
-            return self.listed(leaf, number, own, out);
-        }
-        let known = match own {
-            None => self.tree.stay(number, self.place),
-            Some(_) => None,
-        };
-        let stay = match known {
-            Some(stay) => stay,
-            None => leaf.stay(self.query.ray, own).ok_or(TooClose)?,
-        };
-        self.query.stay(leaf, number, own, &stay, out)
-    }
-
-    /// The same for a shape that lists its crossings.
-    fn listed(
-        &mut self,
-        leaf: &Leaf,
-        number: u32,
-        own: Option<SurfaceId>,
-        out: &mut Line,
-    ) -> Result<(), TooClose> {
-        let query = self.query;
-        let mut list = self.scratch.take();
-        leaf.bare_crossings(query.ray, query.alive, own, self.scratch, &mut list);
-        out.set(list.inside_at_start);
-        let mut sure = Ok(());
-        for crossing in &list.list {
-            let (hit, enters) = (&crossing.hit, crossing.side == Side::Enter);
-            if crossing.side == Side::Inner || hit.uv != [0.0; 2] || query.starts_at(hit.t) {
-                sure = Err(TooClose);
-            } else if hit.t > query.begin {
-                let end = LineEnd {
-                    t: hit.t,
-                    leaf: number,
-                    element: hit.surface.element,
-                    facet: hit.surface.facet,
-                };
-                sure = sure.and(out.ends.try_push(end).map_err(|_| TooClose));
-            } else {
-                out.inside = enters;
-            }
-        }
-        self.scratch.give(list);
-        sure
-    }
-}
-
-impl Query<'_> {
-    /// Where the ray is inside of what a leaf contributes, given where it is inside of its shape.
-    #[inline(always)]
-    fn stay(
-        &self,
-        leaf: &Leaf,
-        number: u32,
-        own: Option<SurfaceId>,
-        stay: &Stay,
-        out: &mut Line,
-    ) -> Result<(), TooClose> {
-        // Whether the leaf contributes what is outside of the span.
-        let outside = leaf.negative != stay.outside;
-        out.set(outside);
-        let Some(Span { enter, exit }) = stay.span else {
-            return Ok(());
-        };
-        if exit.t < self.alive.min || enter.t > self.alive.max {
-            return Ok(());
-        }
-        for End { t, facet } in [enter, exit] {
-            let left = own.is_some_and(|surface| t == 0.0 && surface.facet == facet);
-            if left || t.is_infinite() {
-                continue;
-            }
-            if self.starts_at(t) {
-                return Err(TooClose);
-            }
-            if t > self.begin {
-                out.ends.push(LineEnd {
-                    t,
-                    leaf: number,
-                    element: leaf.first_element,
-                    facet,
-                });
-            }
-        }
-        out.inside = (enter.t <= self.begin && self.begin < exit.t) != outside;
-        Ok(())
-    }
-
-    /// Combines what the ray is inside of with another operand.
-    fn combine(&self, rule: Rule, line: &mut Line, other: &Line) -> Result<(), TooClose> {
-        let holds = |a: bool, b: bool| match rule {
-            Rule::Intersection => a && b,
-            Rule::Union | Rule::Merge => a || b,
-        };
-        let (mut a, mut b) = (line.inside, other.inside);
-        let mut state = holds(a, b);
-        let mut both = Line {
-            inside: state,
-            ends: ArrayVec::new(),
-        };
-        let (mut left, mut right) = (&line.ends[..], &other.ends[..]);
-        let mut before = f64::NEG_INFINITY;
-        loop {
-            let end = match (left.split_first(), right.split_first()) {
-                (None, None) => break,
-                (Some((end, rest)), other) if other.is_none_or(|(o, _)| end.t < o.t) => {
-                    (a, left) = (!a, rest);
-                    end
-                }
-                (_, Some((end, rest))) => {
-                    (b, right) = (!b, rest);
-                    end
-                }
-                // Parameters are numbers.
-                _ => return Err(TooClose),
-            };
-            if before <= self.range.max {
-                self.check_apart(before, end.t)?;
-            }
-            before = end.t;
-            if holds(a, b) != state {
-                state = !state;
-                both.ends.try_push(*end).map_err(|_| TooClose)?;
-            }
-        }
-        *line = both;
-        Ok(())
-    }
-
-    /// Fails for a crossing and the next one if they could coincide.
-    #[inline(always)]
-    fn check_apart(&self, t: f64, next: f64) -> Result<(), TooClose> {
-        if next - t > self.fusing.gap(t, next) || next == f64::INFINITY || t == f64::NEG_INFINITY {
-            Ok(())
-        } else {
-            Err(TooClose)
-        }
-    }
-}
-
-/// Four rays that are tested against many boxes.
-struct FourSlabs<I: Isa> {
-    origin: [I::F64x4; 3],
-    inverse: [I::F64x4; 3],
-    /// The parts that matter, a little wider than what is asked.
-    min: I::F64x4,
-    max: I::F64x4,
-    /// The lanes that run along a face of a box.
-    parallel: u32,
-}
-
-impl<I: Isa> FourSlabs<I> {
-    #[inline(always)]
-    fn new(isa: I, rays: &FourRays<I>, min: f64, ends: &[f64; LANES]) -> Self {
-        let one = isa.splat(1.0);
-        let [x, y, z] = rays.direction;
-        let inverse = [isa.div(one, x), isa.div(one, y), isa.div(one, z)];
-        let largest = isa.splat(f64::MAX);
-        let finite = isa.le(isa.abs(inverse[0]), largest)
-            & isa.le(isa.abs(inverse[1]), largest)
-            & isa.le(isa.abs(inverse[2]), largest);
-        let fusing = FourFusing::new(isa, rays);
-        let (min, max, wide) = (isa.splat(min), isa.load(ends), isa.splat(32.0));
-        Self {
-            origin: rays.origin,
-            inverse,
-            min: isa.sub(min, isa.mul(wide, fusing.margin(isa, min))),
-            max: isa.add(max, isa.mul(wide, fusing.margin(isa, max))),
-            parallel: !finite & 0b1111,
-        }
-    }
-
-    /// The lanes, as bits, that may meet a box: all others certainly miss it.
-    #[inline(always)]
-    fn may_meet(&self, isa: I, bounds: &Aabb) -> u32 {
-        // A difference, a reciprocal and a product, each within half an ulp: widened by more than their sum.
-        let slack = isa.splat(4.0 * f64::EPSILON);
-        let corner = |v: strahl_math::DVec3| [isa.splat(v.x), isa.splat(v.y), isa.splat(v.z)];
-        let (low, high) = (corner(bounds.min), corner(bounds.max));
-        let a = times(isa, sub(isa, low, self.origin), self.inverse);
-        let b = times(isa, sub(isa, high, self.origin), self.inverse);
-        let near = isa.max(
-            isa.max(isa.min(a[0], b[0]), isa.min(a[1], b[1])),
-            isa.min(a[2], b[2]),
-        );
-        let far = isa.min(
-            isa.min(isa.max(a[0], b[0]), isa.max(a[1], b[1])),
-            isa.max(a[2], b[2]),
-        );
-        let near = isa.sub(near, isa.mul(isa.abs(near), slack));
-        let far = isa.add(far, isa.mul(isa.abs(far), slack));
-        let missed = isa.lt(far, near) | isa.lt(far, self.min) | isa.lt(self.max, near);
-        !missed & 0b1111 | self.parallel
-    }
-}
-
-#[inline(always)]
-fn times<I: Isa>(isa: I, a: [I::F64x4; 3], b: [I::F64x4; 3]) -> [I::F64x4; 3] {
-    [
-        isa.mul(a[0], b[0]),
-        isa.mul(a[1], b[1]),
-        isa.mul(a[2], b[2]),
-    ]
 }
