@@ -2,10 +2,10 @@
 //! rays are.
 
 mod instance;
+mod plain;
 
 use super::block::{Block, BlockOfLeaf, Fetched, PacketCulls};
 use super::kinds::{Any, Closest, Query, Transmitting};
-use super::shapes::PlainShape;
 use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::activity::{Phase, Slot};
 use crate::blocks::{Blocks, Flats, LeafClass};
@@ -21,9 +21,7 @@ use strahl_accel::{
 use strahl_geometry::blocks::{
     Hits, PacketLines, PacketRays, PacketShears, PacketSpans, SphereBlock, TriangleBlock,
 };
-use strahl_geometry::{
-    Csg, PacketRanges, PacketTree, PrimHit, Primitive, RayShear, Scratch, Shape, SurfaceId,
-};
+use strahl_geometry::{PacketTree, RayShear, Scratch};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
@@ -363,223 +361,6 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
                         }
                     }
                 }
-            }
-        }
-    }
-
-    /// Tests a shape whose hits need no further checks for several rays.
-    #[inline(never)]
-    fn plain_shape(&mut self, id: u32, index: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
-        let shape = PlainShape::of(self.group, id, index, self.place.base);
-        self.shared
-            .slot
-            .enter_for(Phase::Intersection, shape.number);
-        let side_by_side = match (shape.shape, shape.transform) {
-            // The test of a box along the axes takes too little time.
-            (Shape::Cuboid(_), None) => false,
-            (Shape::Csg(tree), _) if tree.goes_in_packets() && lanes.count_ones() >= FEW => {
-                self.meet_tree(id, &shape, tree, lanes, t_max);
-                self.shared.slot.enter(Phase::Traversal);
-                return;
-            }
-            (shape, _) => PacketSpans::know(shape) && are_dense(lanes & !self.lanes_from(id)),
-        };
-        if Q::ALL {
-            self.meet_all(id, &shape, side_by_side, lanes, t_max);
-            self.shared.slot.enter(Phase::Traversal);
-            return;
-        }
-        match (shape.shape, shape.transform) {
-            // Nearly every scene has a plane, and all rays are tested for it: the test is compiled into the loop.
-            (Shape::Plane(plane), None) => {
-                self.meet_together(id, &shape, lanes, t_max, |ray, range, from, scratch| {
-                    shape.meet_as::<Q, _>(plane, ray, range, from, scratch)
-                });
-            }
-            _ if side_by_side => self.meet_spans(id, &shape, lanes, t_max),
-            _ => self.meet_together(id, &shape, lanes, t_max, |ray, range, from, scratch| {
-                shape.meet::<Q>(ray, range, from, scratch)
-            }),
-        }
-        self.shared.slot.enter(Phase::Traversal);
-    }
-
-    /// The lanes whose rays start on a primitive.
-    #[inline]
-    fn lanes_from(&self, id: u32) -> u32 {
-        let mut lanes = 0;
-        for (lane, from) in self.from_prims.iter().enumerate() {
-            lanes |= u32::from(*from == id) << lane;
-        }
-        lanes
-    }
-
-    /// Tests a tree for several rays: its leaves four side by side.
-    fn meet_tree(
-        &mut self,
-        id: u32,
-        shape: &PlainShape<'_>,
-        tree: &Csg,
-        lanes: u32,
-        t_max: &mut [f64; PACKET],
-    ) {
-        let starting = self.lanes_from(id);
-        let ranges = PacketRanges {
-            rays: self.asked.rays,
-            min: self.asked.min,
-            t_max,
-            starting,
-        };
-        let map = shape.transform;
-        let known = &mut self.shared.tree;
-        known.find(tree, &ranges, map, lanes);
-        let mut found = self.shared.scratch.take_hits();
-        for (place, lane) in lanes_of(lanes).enumerate() {
-            let before = t_max[lane];
-            if !(before > f64::NEG_INFINITY) {
-                continue;
-            }
-            let range = Interval::new(self.asked.min, before);
-            let from = match self.asked.from[lane] {
-                Some(origin) if starting >> lane & 1 == 1 => {
-                    Some(shape.start(origin, origin.id - self.place.base))
-                }
-                _ => None,
-            };
-            let ray = &self.asked.rays[lane];
-            let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
-            let scratch = &mut *self.shared.scratch;
-            let query = &mut self.queries[lane];
-            if Q::ALL {
-                found.clear();
-                if !known.all(tree, place, &inner, range, from, scratch, &mut found) {
-                    found.clear();
-                    tree.all_hits(&inner, range, from, scratch, &mut found);
-                }
-                for hit in &found {
-                    t_max[lane] = query.take(shape.hit(hit), t_max[lane]);
-                }
-                continue;
-            }
-            let hit = match known.closest(tree, place, &inner, range, from, scratch) {
-                Some(hit) => hit,
-                None => tree.closest_hit(&inner, range, from, scratch),
-            };
-            if let Some(hit) = hit {
-                let hit = match Q::ANY {
-                    true => PrimHit::simple(range.max, 0),
-                    false => hit,
-                };
-                t_max[lane] = query.take(shape.hit(&hit), before);
-            }
-        }
-        self.shared.scratch.give_hits(found);
-    }
-
-    /// Finds where those of several rays that don't start on a shape are inside of it, four side by side.
-    fn find_spans(&mut self, id: u32, shape: &PlainShape<'_>, lanes: u32) {
-        let elsewhere = lanes & !self.lanes_from(id);
-        let rays = self
-            .coordinates
-            .get_or_insert_with(|| PacketRays::new(self.asked.rays));
-        self.spans
-            .find(shape.shape, rays, shape.transform, elsewhere);
-    }
-
-    /// Takes all hits of several rays on a shape, found four `side_by_side` or one by one.
-    fn meet_all(
-        &mut self,
-        id: u32,
-        shape: &PlainShape<'_>,
-        side_by_side: bool,
-        lanes: u32,
-        t_max: &mut [f64; PACKET],
-    ) {
-        if side_by_side {
-            self.find_spans(id, shape, lanes);
-        }
-        let mut found = self.shared.scratch.take_hits();
-        for lane in lanes_of(lanes) {
-            if !(t_max[lane] > f64::NEG_INFINITY) {
-                continue;
-            }
-            let range = Interval::new(self.asked.min, t_max[lane]);
-            let from = match self.asked.from[lane] {
-                Some(origin) if id == self.from_prims[lane] => {
-                    Some(shape.start(origin, origin.id - self.place.base))
-                }
-                _ => None,
-            };
-            found.clear();
-            let known = side_by_side
-                && from.is_none()
-                && self.spans.all(shape.shape, lane, range, &mut found);
-            if !known {
-                let ray = &self.asked.rays[lane];
-                shape.meet_all(ray, range, from, self.shared.scratch, &mut found);
-            }
-            for hit in &found {
-                t_max[lane] = self.queries[lane].take(shape.hit(hit), t_max[lane]);
-            }
-        }
-        self.shared.scratch.give_hits(found);
-    }
-
-    /// Tests a shape for several rays: four side by side.
-    fn meet_spans(
-        &mut self,
-        id: u32,
-        shape: &PlainShape<'_>,
-        lanes: u32,
-        t_max: &mut [f64; PACKET],
-    ) {
-        self.find_spans(id, shape, lanes);
-        for lane in lanes_of(lanes) {
-            let before = t_max[lane];
-            if !(before > f64::NEG_INFINITY) {
-                continue;
-            }
-            let range = Interval::new(self.asked.min, before);
-            let ray = &self.asked.rays[lane];
-            let hit = match self.asked.from[lane] {
-                Some(origin) if id == self.from_prims[lane] => {
-                    let from = Some(shape.start(origin, origin.id - self.place.base));
-                    shape.meet::<Q>(ray, range, from, self.shared.scratch)
-                }
-                _ => match shape.meet_known::<Q>(&self.spans, lane, range) {
-                    Some(hit) => hit,
-                    None => shape.meet::<Q>(ray, range, None, self.shared.scratch),
-                },
-            };
-            if let Some(hit) = hit {
-                t_max[lane] = self.queries[lane].take(hit, before);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn meet_together(
-        &mut self,
-        id: u32,
-        shape: &PlainShape<'_>,
-        lanes: u32,
-        t_max: &mut [f64; PACKET],
-        meet: impl Fn(&Ray, Interval, Option<SurfaceId>, &mut Scratch) -> Option<Hit>,
-    ) {
-        for lane in lanes_of(lanes) {
-            let before = t_max[lane];
-            if !(before > f64::NEG_INFINITY) {
-                continue;
-            }
-            let from = match self.asked.from[lane] {
-                Some(origin) if id == self.from_prims[lane] => {
-                    Some(shape.start(origin, origin.id - self.place.base))
-                }
-                _ => None,
-            };
-            let range = Interval::new(self.asked.min, before);
-            if let Some(hit) = meet(&self.asked.rays[lane], range, from, self.shared.scratch) {
-                t_max[lane] = self.queries[lane].take(hit, before);
             }
         }
     }
