@@ -1,3 +1,4 @@
+mod bundles;
 mod crew;
 mod pixels;
 mod plan;

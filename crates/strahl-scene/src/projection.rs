@@ -124,12 +124,24 @@ pub struct CameraPart {
 }
 
 impl CameraPart {
+    /// The corners of a face in the world.
+    #[inline]
+    pub fn corners_in_world(&self, face: &CameraFace) -> [DVec3; 3] {
+        let [a, b, c] = face.corners;
+        let map = &self.transform;
+        [
+            map.point_to_world(a),
+            map.point_to_world(b),
+            map.point_to_world(c),
+        ]
+    }
+
     /// A face in the world.
     pub fn in_world(&self, face: &CameraFace) -> CameraFace {
         let map = &self.transform;
         let turned = |n: DVec3| map.normal_to_world(n).normalize_or_zero();
         CameraFace {
-            corners: face.corners.map(|c| map.point_to_world(c)),
+            corners: self.corners_in_world(face),
             normals: face.normals.map(|n| n.map(turned)),
             ..*face
         }
@@ -157,11 +169,11 @@ impl CameraMesh {
         self.len() == 0
     }
 
-    /// A face in the world; `None` if there are fewer.
-    pub fn face(&self, mut index: usize) -> Option<CameraFace> {
+    /// A face and its part; `None` if there are fewer.
+    pub fn find(&self, mut index: usize) -> Option<(&CameraPart, &CameraFace)> {
         for part in &self.parts {
             match part.faces.get(index) {
-                Some(face) => return Some(part.in_world(face)),
+                Some(face) => return Some((part, face)),
                 None => index -= part.faces.len(),
             }
         }
@@ -202,14 +214,21 @@ pub enum CameraFront {
     Counterclockwise,
 }
 
+impl CameraFront {
+    /// The unit normal of the plane through these corners; z if they are on a line.
+    #[inline]
+    pub fn normal(self, [a, b, c]: [DVec3; 3]) -> DVec3 {
+        let clockwise = (c - a).cross(b - a).normalize_or(DVec3::Z);
+        match self {
+            Self::Clockwise => clockwise,
+            Self::Counterclockwise => -clockwise,
+        }
+    }
+}
+
 impl CameraFace {
     /// The unit normal of the plane; z if the corners are on a line.
     pub fn normal(&self) -> DVec3 {
-        let [a, b, c] = self.corners;
-        let clockwise = (c - a).cross(b - a).normalize_or(DVec3::Z);
-        match self.front {
-            CameraFront::Clockwise => clockwise,
-            CameraFront::Counterclockwise => -clockwise,
-        }
+        self.front.normal(self.corners)
     }
 }

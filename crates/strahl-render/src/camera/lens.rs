@@ -1,6 +1,6 @@
 mod fours;
 
-use arrayvec::ArrayVec;
+use super::bundle::{FewRays, RayBundle};
 use fours::FourRays;
 use std::sync::Arc;
 use strahl_accel::PACKET;
@@ -15,19 +15,7 @@ const FEW: u32 = 4;
 /// whose colours have the standard deviation `sd`; the numbers are in the test `as_many_rays_as_povray`.
 const RAYS_PER_DEVIATION: f64 = 0.977;
 
-/// Traces a few rays one by one; where there is no ray the colour is black.
-pub(super) fn one_by_one(
-    mut trace: impl FnMut(&Ray) -> Color,
-) -> impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET> {
-    move |rays| {
-        let colors = rays.iter();
-        colors
-            .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
-            .collect()
-    }
-}
-
-/// Focal blur: traces rays through a lens.
+/// Focal blur: makes rays through a lens.
 #[derive(Clone, Debug)]
 pub(super) struct LensSampler {
     /// Half the width and height of the lens.
@@ -78,38 +66,29 @@ impl LensSampler {
         Some(lens)
     }
 
-    /// The mean of the rays through the lens. Each ray meets the plane of focus at the same point as the chief ray of a
+    /// Appends the rays through the lens that come next. Each ray meets the plane of focus at the same point as the chief ray of a
     /// position up to half a pixel away along each axis: like POV-Ray's, the lens is never sharper than a pixel (measured: the
     /// means over pixels of objects in focus). `center` returns the camera's chief ray, if it sees something there; the length of
-    /// its direction matters only to cameras with a sphere of focus, where it is 1. `trace` returns the colours of a few rays, at
-    /// most [`PACKET`]; where the camera sees nothing there is no ray.
-    pub(super) fn color(
+    /// its direction matters only to cameras with a sphere of focus, where it is 1. Where the camera sees nothing there is no ray.
+    pub(super) fn more(
         &self,
-        (x, y): (f64, f64),
+        bundle: &RayBundle,
         center: impl Fn(f64, f64) -> Option<Ray>,
-        mut trace: impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET>,
-    ) -> Color {
-        let shift = scramble((x, y));
-        let (mut sum, mut squares, mut count) = (Color::BLACK, Color::BLACK, 0u32);
-        loop {
-            let wanted = self.wanted(sum, squares, count);
-            if wanted == 0 {
-                break;
-            }
-            let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
-            let numbers = count..count + wanted;
-            let made = self.fours.as_ref();
-            if !made.is_some_and(|fours| fours.push(numbers.clone(), shift, [x, y], &mut rays)) {
-                rays.clear();
-                rays.extend(numbers.map(|index| self.ray(index, shift, (x, y), &center)));
-            }
-            for color in trace(&rays) {
-                sum += color;
-                squares += color * color;
-            }
-            count += wanted;
+        rays: &mut FewRays,
+    ) {
+        let (x, y) = bundle.at;
+        let wanted = self.wanted(bundle.sum, bundle.squares, bundle.count);
+        if wanted == 0 {
+            return;
         }
-        sum / f64::from(count.max(1))
+        let shift = bundle.shift;
+        let numbers = bundle.count..bundle.count + wanted;
+        let made = self.fours.as_ref();
+        let before = rays.len();
+        if !made.is_some_and(|fours| fours.push(numbers.clone(), shift, [x, y], rays)) {
+            rays.truncate(before);
+            rays.extend(numbers.map(|index| self.ray(index, shift, (x, y), &center)));
+        }
     }
 
     /// The number of rays to trace next, at most [`PACKET`]; 0 if there are enough, or as many as allowed.
@@ -201,7 +180,7 @@ fn quantile(confidence: f64) -> f64 {
 }
 
 /// Four numbers in `0..1` that differ for every position in the picture (the mixer of SplitMix64).
-fn scramble((x, y): (f64, f64)) -> [f64; 4] {
+pub(super) fn scramble((x, y): (f64, f64)) -> [f64; 4] {
     let mix = |mut z: u64| {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -245,6 +224,7 @@ fn disc(a: f64, b: f64) -> (f64, f64) {
 mod tests {
     use super::super::PrimaryRays;
     use super::*;
+    use crate::sampling::Sample;
     use strahl_scene::Lens;
 
     fn blurred(max_samples: u32) -> LensSampler {
@@ -265,13 +245,31 @@ mod tests {
             lens.fours = None;
         }
         let mut all = vec![];
-        rays.mean(at.0, at.1, |rays| {
-            all.extend_from_slice(rays);
-            rays.iter()
-                .map(|_| Color::gray((all.len() % 7) as f64))
-                .collect()
-        });
-        all
+        let mut bundle = rays.bundle(at.0, at.1);
+        loop {
+            let mut few = FewRays::new();
+            rays.more(&mut bundle, &mut few);
+            if few.is_empty() {
+                return all;
+            }
+            all.extend_from_slice(&few);
+            for ray in &few {
+                let color = Color::gray((all.len() % 7) as f64);
+                bundle.add(&Sample::from(color), ray.is_some());
+            }
+        }
+    }
+
+    /// The mean of the rays of a position, traced one by one.
+    fn color(
+        lens: &LensSampler,
+        (x, y): (f64, f64),
+        center: impl Fn(f64, f64) -> Option<Ray>,
+        trace: impl FnMut(&Ray) -> Color,
+    ) -> Color {
+        let more = |bundle: &mut RayBundle, rays: &mut FewRays| lens.more(bundle, &center, rays);
+        let bundle = RayBundle::new(x, y).traced(more, trace);
+        bundle.mean().color
     }
 
     #[test]
@@ -297,15 +295,15 @@ mod tests {
         let mut widest: f64 = 0.0;
         let mut count = 0;
         let same = |_, _| Some(center);
-        let alternate = one_by_one(|ray| {
+        let alternate = |ray: &Ray| {
             assert!((ray.origin - DVec3::ZERO).length() <= 0.5 + 1e-12);
             let t = (5.0 - ray.origin.z) / ray.direction.z;
             assert!((ray.at(t) - meeting).length() < 1e-12);
             widest = widest.max(ray.origin.length());
             count += 1;
             Color::gray(f64::from(count % 2))
-        });
-        lens.color((0.5, 0.5), same, alternate);
+        };
+        color(&lens, (0.5, 0.5), same, alternate);
         assert!(widest > 0.45 && count == 100, "{widest} {count}");
     }
 
@@ -313,15 +311,12 @@ mod tests {
     fn what_is_certain_takes_few_rays() {
         let ray = Ray::new(DVec3::ZERO, DVec3::Z);
         let mut count = 0;
-        let color = blurred(1000).color(
-            (3.5, 2.5),
-            |_, _| Some(ray),
-            one_by_one(|_| {
-                count += 1;
-                Color::gray(0.25)
-            }),
-        );
-        assert_eq!((color, count), (Color::gray(0.25), 7));
+        let gray = |_: &Ray| {
+            count += 1;
+            Color::gray(0.25)
+        };
+        let mean = color(&blurred(1000), (3.5, 2.5), |_, _| Some(ray), gray);
+        assert_eq!((mean, count), (Color::gray(0.25), 7));
     }
 
     #[test]
@@ -332,14 +327,14 @@ mod tests {
         let at = |x: f64, _| Some(Ray::new(DVec3::X * x, DVec3::Z));
         // An edge in focus through the pixel; the object is to its right.
         for edge in [3.2, 3.5, 3.9] {
-            let right_of_edge = one_by_one(|ray| {
+            let right_of_edge = |ray: &Ray| {
                 let x = ray.at((5.0 - ray.origin.z) / ray.direction.z).x;
                 Color::gray(f64::from(x > edge))
-            });
-            let color = lens.color((3.5, 2.5), at, right_of_edge);
-            assert!((color.r - (4.0 - edge)).abs() < 0.01, "{edge}: {color:?}");
+            };
+            let mean = color(&lens, (3.5, 2.5), at, right_of_edge);
+            assert!((mean.r - (4.0 - edge)).abs() < 0.01, "{edge}: {mean:?}");
         }
-        let blind = lens.color((3.5, 2.5), |_, _| None, one_by_one(|_| Color::WHITE));
+        let blind = color(&lens, (3.5, 2.5), |_, _| None, |_| Color::WHITE);
         assert_eq!(blind, Color::BLACK);
     }
 

@@ -1,133 +1,125 @@
+mod fours;
+
 use super::PrimaryRays;
-use arrayvec::ArrayVec;
+use super::bundle::{FewRays, RayBundle};
+pub(super) use fours::FourFaces;
 use strahl_accel::PACKET;
 use strahl_math::{DVec2, DVec3, Ray};
-use strahl_scene::{CameraFace, CameraMesh, MeshCamera, MeshLayout};
-use strahl_shade::Color;
+use strahl_scene::{CameraFace, CameraMesh, CameraPart, MeshCamera, MeshLayout};
 
 impl PrimaryRays {
-    /// The mean of the rays from the faces that belong to a position in the picture; black if there are none. `trace` returns the colours of
-    /// at most [`PACKET`] rays.
-    pub(super) fn mesh_color(
+    /// Appends rays from the faces that belong to a position in the picture, until there are as many as a packet has.
+    pub(super) fn more_of_mesh(
         &self,
         mesh: &MeshCamera,
-        x: f64,
-        y: f64,
-        mut trace: impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET>,
-    ) -> Color {
-        let (mut sum, mut count) = (Color::BLACK, 0u32);
-        let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
-        let mut trace_all = |rays: &mut ArrayVec<Option<Ray>, PACKET>| {
-            for color in trace(rays) {
-                sum += color;
-                count += 1;
+        bundle: &mut RayBundle,
+        rays: &mut FewRays,
+    ) {
+        let pixel = self.pixel(bundle.at);
+        let end = most_rays(mesh);
+        while rays.len() < PACKET && bundle.next < end {
+            let number = bundle.next;
+            if number.is_multiple_of(4)
+                && rays.len() + 4 <= PACKET
+                && number + 4 <= end
+                && let Some(Some(four)) = self.fours.get(number as usize / 4)
+            {
+                four.push(mesh, pixel, rays);
+                bundle.next += 4;
+                continue;
             }
-            rays.clear();
-        };
-        self.visit_mesh_rays(mesh, x, y, &mut |ray| {
-            rays.push(Some(ray));
-            if rays.is_full() {
-                trace_all(&mut rays);
-            }
-        });
-        if !rays.is_empty() {
-            trace_all(&mut rays);
-        }
-        if count == 0 {
-            Color::BLACK
-        } else {
-            sum / f64::from(count)
+            rays.extend(self.mesh_ray(mesh, bundle.at, number).map(Some));
+            bundle.next += 1;
         }
     }
 
-    /// The ray of a position in the picture, if the camera has no more than one for each; `None` where it sees nothing.
-    pub(super) fn mesh_ray(&self, mesh: &MeshCamera, x: f64, y: f64) -> Option<Ray> {
-        let mut found = None;
-        if has_one_ray(mesh) {
-            self.visit_mesh_rays(mesh, x, y, &mut |ray| found = Some(ray));
-        }
-        found
-    }
-
-    /// Visits the rays from the faces that belong to a position in the picture.
-    fn visit_mesh_rays(&self, mesh: &MeshCamera, x: f64, y: f64, visit: &mut impl FnMut(Ray)) {
+    /// The number of the pixel of a position, counted row by row.
+    fn pixel(&self, (x, y): (f64, f64)) -> usize {
         let (width, height) = (self.width as usize, self.height as usize);
         let column = (x.max(0.0) as usize).min(width.saturating_sub(1));
         let row = (y.max(0.0) as usize).min(height.saturating_sub(1));
-        let pixel = row * width + column;
-        let mut add = |ray: Option<Ray>| {
-            if let Some(ray) = ray {
-                visit(ray);
-            }
-        };
-        match mesh.layout {
-            MeshLayout::Each(rays) => {
-                for faces in mesh.meshes.iter().take(rays as usize) {
-                    add(faces.face(pixel).map(|face| mesh.ray_through_middle(&face)));
-                }
-            }
-            MeshLayout::Joined(rays) => {
-                for number in 0..rays as usize {
-                    let index = pixel + number * width * height;
-                    add(mesh
-                        .joined(index)
-                        .map(|face| mesh.ray_through_middle(&face)));
-                }
+        row * width + column
+    }
+
+    /// One of the rays of a position in the picture; `None` where it sees nothing.
+    pub(super) fn mesh_ray(
+        &self,
+        mesh: &MeshCamera,
+        (x, y): (f64, f64),
+        number: u32,
+    ) -> Option<Ray> {
+        if number >= most_rays(mesh) {
+            return None;
+        }
+        let pixel = self.pixel((x, y));
+        let (part, face) = match mesh.layout {
+            MeshLayout::Each(_) => mesh.meshes.get(number as usize)?.find(pixel)?,
+            MeshLayout::Joined(_) => {
+                let picture = self.width as usize * self.height as usize;
+                mesh.joined(pixel + number as usize * picture)?
             }
             MeshLayout::SideBySide => {
+                let width = self.width as usize;
+                let (row, column) = (pixel / width, pixel % width);
                 let count = mesh.meshes.len().max(1);
-                let part = (width / count).max(1);
-                let which = (column / part).min(count - 1);
-                let index = row * part + (column - which * part).min(part - 1);
-                let face = mesh.meshes.get(which).and_then(|faces| faces.face(index));
-                add(face.map(|face| mesh.ray_through_middle(&face)));
+                let share = (width / count).max(1);
+                let which = (column / share).min(count - 1);
+                let index = row * share + (column - which * share).min(share - 1);
+                mesh.meshes.get(which)?.find(index)?
             }
             MeshLayout::ByUv => {
                 let place = DVec2::new(x / self.width, 1.0 - y / self.height);
                 let parts = mesh.meshes.first().map_or(&[][..], CameraMesh::parts);
-                let found = parts.iter().find_map(|part| {
+                return parts.iter().find_map(|part| {
                     part.faces.iter().find_map(|face| {
                         let weights = barycentric(face.uv?, place)?;
                         Some(mesh.ray_through(&part.in_world(face), weights))
                     })
                 });
-                add(found);
             }
-        }
+        };
+        Some(mesh.ray_through_middle(part, face))
     }
 }
 
-/// Whether no position in the picture has more than one ray.
-pub(super) fn has_one_ray(mesh: &MeshCamera) -> bool {
+/// Whether positions in the picture may have more than one ray.
+pub(super) fn has_many_rays(mesh: &MeshCamera) -> bool {
+    most_rays(mesh) > 1
+}
+
+/// The most rays of a position in the picture.
+fn most_rays(mesh: &MeshCamera) -> u32 {
     match mesh.layout {
-        MeshLayout::Each(rays) | MeshLayout::Joined(rays) => rays <= 1,
-        MeshLayout::SideBySide | MeshLayout::ByUv => true,
+        MeshLayout::Each(rays) => rays.min(mesh.meshes.len() as u32),
+        MeshLayout::Joined(rays) => rays,
+        MeshLayout::SideBySide | MeshLayout::ByUv => 1,
     }
 }
 
 /// How a mesh camera derives rays from its faces.
 trait FaceRays {
-    fn joined(&self, index: usize) -> Option<CameraFace>;
-    fn ray_through_middle(&self, face: &CameraFace) -> Ray;
+    fn joined(&self, index: usize) -> Option<(&CameraPart, &CameraFace)>;
+    fn ray_through_middle(&self, part: &CameraPart, face: &CameraFace) -> Ray;
     fn ray_through(&self, face: &CameraFace, weights: [f64; 3]) -> Ray;
     fn leaving(&self, point: DVec3, normal: DVec3) -> Ray;
 }
 
 impl FaceRays for MeshCamera {
-    /// A face, with the faces of all meshes numbered consecutively.
-    fn joined(&self, mut index: usize) -> Option<CameraFace> {
+    /// A face and its part, with the faces of all meshes numbered consecutively.
+    fn joined(&self, mut index: usize) -> Option<(&CameraPart, &CameraFace)> {
         for faces in &self.meshes {
             match index.checked_sub(faces.len()) {
-                None => return faces.face(index),
+                None => return faces.find(index),
                 Some(rest) => index = rest,
             }
         }
         None
     }
 
-    fn ray_through_middle(&self, face: &CameraFace) -> Ray {
-        let [a, b, c] = face.corners;
-        self.leaving((a + b + c) / 3.0, face.normal())
+    fn ray_through_middle(&self, part: &CameraPart, face: &CameraFace) -> Ray {
+        let corners = part.corners_in_world(face);
+        let [a, b, c] = corners;
+        self.leaving((a + b + c) / 3.0, face.front.normal(corners))
     }
 
     fn ray_through(&self, face: &CameraFace, [wa, wb, wc]: [f64; 3]) -> Ray {
@@ -165,7 +157,8 @@ mod tests {
     use super::*;
     use std::sync::Arc;
     use strahl_math::Transform;
-    use strahl_scene::{Camera, CameraFront, CameraPart, Projection};
+    use strahl_scene::{Camera, CameraFront, Projection};
+    use strahl_shade::Color;
 
     fn face(x: f64) -> CameraFace {
         let corner = |dx: f64, dy: f64| DVec3::new(x + dx, dy, 0.0);
@@ -188,7 +181,7 @@ mod tests {
         let mut moved = CameraMesh::default();
         moved.push(part(0..2));
         moved.push(part(2..4));
-        assert_eq!((moved.len(), moved.face(4)), (4, None));
+        assert_eq!((moved.len(), moved.find(4)), (4, None));
         let meshes = vec![CameraMesh::from(faces.clone()), moved];
         let mesh = MeshCamera {
             layout,
@@ -222,5 +215,65 @@ mod tests {
         // The lower left quarter of the picture.
         assert_eq!(find(MeshLayout::ByUv), [DVec3::new(0.75, 0.75, 0.5)]);
         assert_eq!(origins(MeshLayout::ByUv, (1.9, 0.1)), []);
+    }
+
+    /// Eight copies of a mesh with usual faces and with corners on a line.
+    fn copies(reversed: bool) -> PrimaryRays {
+        let faces: Arc<[CameraFace]> = (0..6)
+            .map(|n| {
+                let mut face = face(f64::from(n) * 0.7);
+                face.corners[2].z = f64::from(n) - 1.5;
+                match n {
+                    1 => face.front = CameraFront::Clockwise,
+                    4 => face.corners[1] = face.corners[0],
+                    5 => face.corners[0].y = f64::NAN,
+                    _ => {}
+                }
+                face
+            })
+            .collect();
+        let meshes = (0..8).map(|n| {
+            let turn = Transform::rotate(DVec3::new(1.0, 2.0, -0.5), f64::from(n) * 0.3);
+            let mut mesh = CameraMesh::default();
+            mesh.push(CameraPart {
+                faces: Arc::clone(&faces),
+                transform: turn.then(&Transform::translate(DVec3::ONE * f64::from(n))),
+            });
+            mesh
+        });
+        let mut camera = Camera::perspective(DVec3::ZERO, DVec3::Z, DVec3::Y, 1.0);
+        camera.projection = Projection::Mesh(Arc::new(MeshCamera {
+            layout: MeshLayout::Each(8),
+            meshes: meshes.collect(),
+            offset: 0.01,
+            reversed,
+            smooth: false,
+        }));
+        PrimaryRays::new(&camera, 3, 2)
+    }
+
+    #[test]
+    fn four_rays_at_once_have_the_bits_of_single_ones() {
+        let bits = |v: DVec3| {
+            v.to_array()
+                .map(|x| if x.is_nan() { 0 } else { x.to_bits() })
+        };
+        for reversed in [false, true] {
+            let fours = copies(reversed);
+            assert!(fours.fours.len() == 2 && fours.fours.iter().all(Option::is_some));
+            let mut singles = fours.clone();
+            singles.fours.clear();
+            for pixel in 0..6 {
+                let at = (f64::from(pixel % 3) + 0.5, f64::from(pixel / 3) + 0.5);
+                let [a, b] = [&fours, &singles].map(|rays| {
+                    let mut few = FewRays::new();
+                    rays.more(&mut rays.bundle(at.0, at.1), &mut few);
+                    let few = few.iter().flatten();
+                    few.map(|ray| (bits(ray.origin), bits(ray.direction)))
+                        .collect::<Vec<_>>()
+                });
+                assert!(a == b && a.len() == 8, "{pixel}");
+            }
+        }
     }
 }

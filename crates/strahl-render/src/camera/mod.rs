@@ -1,12 +1,14 @@
 //! Primary rays: one or more for each position in the picture.
 
+mod bundle;
 mod lens;
 mod mesh;
 
-use arrayvec::ArrayVec;
-use lens::{LensSampler, one_by_one};
-use mesh::has_one_ray;
-use strahl_accel::{Beam, PACKET};
+pub(crate) use bundle::{FewRays, RayBundle};
+
+use lens::LensSampler;
+use mesh::FourFaces;
+use strahl_accel::Beam;
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
 use strahl_shade::Color;
@@ -19,6 +21,8 @@ pub struct PrimaryRays {
     width: f64,
     height: f64,
     lens: Option<LensSampler>,
+    /// For each four meshes of a mesh camera, how their rays are made at once.
+    fours: Vec<Option<FourFaces>>,
 }
 
 impl PrimaryRays {
@@ -29,6 +33,10 @@ impl PrimaryRays {
         camera.right *= camera.aspect.unwrap_or(width / height);
         Self {
             lens: LensSampler::new(&camera, [width, height]),
+            fours: match &camera.projection {
+                Projection::Mesh(mesh) => FourFaces::of(mesh),
+                _ => vec![],
+            },
             camera,
             width,
             height,
@@ -39,28 +47,26 @@ impl PrimaryRays {
     /// centre of its first pixel. `trace` is called for each ray, with a unit direction; where the camera sees nothing it is
     /// not called.
     pub fn color(&self, x: f64, y: f64, mut trace: impl FnMut(&Ray) -> Color) -> Color {
-        if let Projection::Mesh(mesh) = &self.camera.projection {
-            return self.mesh_color(mesh, x, y, one_by_one(trace));
+        if self.is_sharp() {
+            return self.ray(x, y).map_or(Color::BLACK, |ray| trace(&ray));
         }
-        match &self.lens {
-            Some(lens) => lens.color((x, y), |x, y| self.chief::<false>(x, y), one_by_one(trace)),
-            None => self.ray(x, y).map_or(Color::BLACK, |ray| trace(&ray)),
-        }
+        let more = |bundle: &mut RayBundle, rays: &mut FewRays| self.more(bundle, rays);
+        self.bundle(x, y).traced(more, trace).mean().color
     }
 
-    /// [`PrimaryRays::color`] of a camera with a lens or with many rays from a mesh, which are traced a few at a time: `trace` returns the colours
-    /// of at most [`PACKET`] rays; where the camera sees nothing there is no ray. `None` if each position has at most one ray.
-    pub(crate) fn mean(
-        &self,
-        x: f64,
-        y: f64,
-        trace: impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET>,
-    ) -> Option<Color> {
+    /// The rays of a position, for [`PrimaryRays::more`].
+    pub(crate) fn bundle(&self, x: f64, y: f64) -> RayBundle {
+        RayBundle::new(x, y)
+    }
+
+    /// Appends the rays of a position that come next, once all those before have been added to the bundle; none if there are enough.
+    /// There must be fewer rays than a packet has; there are at most as many more afterwards.
+    pub(crate) fn more(&self, bundle: &mut RayBundle, rays: &mut FewRays) {
         if let Projection::Mesh(mesh) = &self.camera.projection {
-            return (!has_one_ray(mesh)).then(|| self.mesh_color(mesh, x, y, trace));
+            self.more_of_mesh(mesh, bundle, rays);
+        } else if let Some(lens) = &self.lens {
+            lens.more(bundle, |x, y| self.chief::<false>(x, y), rays);
         }
-        let lens = self.lens.as_ref()?;
-        Some(lens.color((x, y), |x, y| self.chief::<false>(x, y), trace))
     }
 
     /// The chief ray, through the centre of the lens; `None` where the camera sees nothing, and for mesh cameras with several rays for a pixel.
@@ -113,7 +119,7 @@ impl PrimaryRays {
     fn special_ray(&self, [x, y]: [f64; 2]) -> Option<Ray> {
         let c = &self.camera;
         if let Projection::Mesh(mesh) = &c.projection {
-            return self.mesh_ray(mesh, x, y);
+            return (!mesh::has_many_rays(mesh)).then(|| self.mesh_ray(mesh, (x, y), 0))?;
         }
         let [u, v] = self.on_film(x, y);
         let sideways = c.right * u + c.up * v;
@@ -141,7 +147,7 @@ impl PrimaryRays {
     /// Whether each position in the picture has at most one ray, that of [`PrimaryRays::ray`].
     pub(crate) fn is_sharp(&self) -> bool {
         match &self.camera.projection {
-            Projection::Mesh(mesh) => has_one_ray(mesh),
+            Projection::Mesh(mesh) => !mesh::has_many_rays(mesh),
             _ => self.lens.is_none(),
         }
     }

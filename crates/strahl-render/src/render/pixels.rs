@@ -59,6 +59,8 @@ pub(super) struct PixelTracer<'s> {
     pub(super) blind: bool,
     /// Whether neighbouring rays are traced in packets.
     pub(super) together: bool,
+    /// Whether positions in the picture have bundles of rays, which share packets with their neighbours.
+    pub(super) bundled: bool,
     /// Whether the last tile was left half done, because the render is cancelled.
     left: bool,
 }
@@ -93,6 +95,7 @@ impl<'s> PixelTracer<'s> {
             depth: 0,
             blind: false,
             together: options.follows_together(rays),
+            bundled: options.has_packets() && !rays.is_sharp(),
             left: false,
         }
     }
@@ -116,7 +119,7 @@ impl Drop for PixelTracer<'_> {
 }
 
 impl PixelTracer<'_> {
-    /// The pixels of a tile in the first pass: in packets where each has one ray, otherwise with `trace`. `shown` makes a value of a
+    /// The pixels of a tile in the first pass: in packets where each has one place, otherwise with `trace`. `shown` makes a value of a
     /// sample; `blank` is that of [`PixelTracer::tile`].
     pub(super) fn first_pass<T: Clone>(
         &mut self,
@@ -126,10 +129,22 @@ impl PixelTracer<'_> {
         shown: impl Fn(Sample) -> T,
     ) -> TileResult<T> {
         let place = self.options.sampling.common_place(0);
-        let Some((dx, dy)) = place.filter(|_| self.together) else {
+        let Some((dx, dy)) = place.filter(|_| self.together || self.bundled) else {
             return self.tile(tile, blank, trace);
         };
         self.start_tile();
+        if self.bundled {
+            let pixels: Vec<(u32, u32)> = squares(tile).flat_map(Region::positions).collect();
+            let places = pixels
+                .iter()
+                .map(|&(x, y)| (f64::from(x) + dx, f64::from(y) + dy));
+            let mut values = vec![shown(Sample::NOTHING); pixels.len()];
+            self.means(places, |number, sample| {
+                let (x, y) = pixels[number];
+                values[tile.index(x, y)] = shown(sample);
+            });
+            return self.end_tile(tile, None, values, Vec::new());
+        }
         let sight = self.sight(tile);
         let mut values = vec![shown(Sample::NOTHING); tile.pixels() as usize];
         for square in squares(tile) {
@@ -490,23 +505,12 @@ impl PixelTracer<'_> {
 
     /// The radiance at a position in the picture; `keep` says whether to store the hit's other data for the pixel.
     pub(super) fn sample(&mut self, x: f64, y: f64, keep: bool) -> Sample {
-        let mut clear = (0.0, 0u32);
-        if self.options.has_packets() && !self.blind {
-            let tree = &mut self.tree;
-            let trace = |rays: &[Option<Ray>]| {
-                let samples = tree.trace_packet(rays);
-                for (sample, _) in samples.iter().zip(rays).filter(|(_, ray)| ray.is_some()) {
-                    clear = (clear.0 + sample.clear, clear.1 + 1);
-                }
-                samples.iter().map(|sample| sample.color).collect()
-            };
-            if let Some(color) = self.rays.mean(x, y, trace) {
-                return Sample {
-                    color,
-                    clear: clear.0 / f64::from(clear.1.max(1)),
-                };
-            }
+        if self.bundled {
+            let mut mean = Sample::NOTHING;
+            self.means([(x, y)].into_iter(), |_, sample| mean = sample);
+            return mean;
         }
+        let mut clear = (0.0, 0u32);
         let before = self.tree.tracer.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;
         let (tree, depth, blind) = (&mut self.tree, &mut self.depth, self.blind);

@@ -167,6 +167,8 @@ impl PixelTracer<'_> {
         costs: &mut [PixelCost],
     ) -> bool {
         let mut packet = Packet::new();
+        // Of bundles of rays.
+        let (mut places, mut parts) = (Vec::new(), Vec::new());
         let options = self.options;
         let most = options.sampling.places(1, 0, 0, 0).len() as u32;
         // The number of a part of a pixel, and back.
@@ -189,7 +191,10 @@ impl PixelTracer<'_> {
                     continue;
                 }
                 let at = (f64::from(x) + place.0, f64::from(y) + place.1);
-                if self.together && !self.blind {
+                if self.bundled {
+                    places.push(at);
+                    parts.push(part_of(number, quadrant));
+                } else if self.together && !self.blind {
                     packet.push((part_of(number, quadrant), self.rays.ray(at.0, at.1)));
                     if packet.is_full() {
                         self.trace_packet(&mut packet, |part, sample| add(list, part, sample));
@@ -205,6 +210,11 @@ impl PixelTracer<'_> {
             }
         }
         self.trace_packet(&mut packet, |part, sample| add(list, part, sample));
+        let mut means = vec![Sample::NOTHING; places.len()];
+        self.means(places.into_iter(), |n, mean| means[n] = mean);
+        for (part, mean) in parts.into_iter().zip(means) {
+            add(list, part, mean);
+        }
         for &number in numbers {
             list[number].sum_up(most);
         }

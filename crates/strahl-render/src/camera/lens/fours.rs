@@ -1,9 +1,7 @@
 //! Four rays through a lens at once: their roots and divisions, one behind the other, take longer than all else.
 
-use super::{LensSampler, STEPS};
-use arrayvec::ArrayVec;
+use super::{FewRays, LensSampler, STEPS};
 use std::ops::Range;
-use strahl_accel::PACKET;
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
 use strahl_simd::{Isa, Simd, dispatch};
@@ -53,7 +51,7 @@ impl FourRays {
         numbers: Range<u32>,
         shift: [f64; 4],
         at: [f64; 2],
-        rays: &mut ArrayVec<Option<Ray>, PACKET>,
+        rays: &mut FewRays,
     ) -> bool {
         dispatch!(Simd::best(), isa => self.push_with(isa, numbers, shift, at, rays))
     }
@@ -65,7 +63,7 @@ impl FourRays {
         numbers: Range<u32>,
         shift: [f64; 4],
         at: [f64; 2],
-        rays: &mut ArrayVec<Option<Ray>, PACKET>,
+        rays: &mut FewRays,
     ) -> bool {
         let mut first = numbers.start;
         while first < numbers.end {

@@ -1,0 +1,84 @@
+//! The rays of one position in the picture, where there may be many.
+
+use super::lens::scramble;
+use crate::sampling::Sample;
+use arrayvec::ArrayVec;
+use strahl_accel::PACKET;
+use strahl_math::Ray;
+use strahl_shade::Color;
+
+/// Rays that fill a packet and those beyond; `None` where the camera sees nothing.
+pub(crate) type FewRays = ArrayVec<Option<Ray>, { 2 * PACKET }>;
+
+/// The rays of a position in the picture, and what they have seen so far. They are made a few at a time, since their number may
+/// depend on what the first ones see.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayBundle {
+    /// The position, in pixels.
+    pub(super) at: (f64, f64),
+    /// How far its points of the lens are from those of other positions.
+    pub(super) shift: [f64; 4],
+    /// The number of the next ray of a mesh camera.
+    pub(super) next: u32,
+    /// The number of rays so far, their colours and the squares of these.
+    pub(super) count: u32,
+    pub(super) sum: Color,
+    pub(super) squares: Color,
+    /// What shows of the background, and the number of rays that it is known of.
+    clear: f64,
+    seen: u32,
+}
+
+impl RayBundle {
+    pub(super) fn new(x: f64, y: f64) -> Self {
+        Self {
+            at: (x, y),
+            shift: scramble((x, y)),
+            next: 0,
+            count: 0,
+            sum: Color::BLACK,
+            squares: Color::BLACK,
+            clear: 0.0,
+            seen: 0,
+        }
+    }
+
+    /// Adds what one of the rays sees; `exists` is false where the camera sees nothing.
+    #[inline]
+    pub(crate) fn add(&mut self, sample: &Sample, exists: bool) {
+        self.sum += sample.color;
+        self.squares += sample.color * sample.color;
+        self.count += 1;
+        if exists {
+            self.clear += sample.clear;
+            self.seen += 1;
+        }
+    }
+
+    /// The mean of the rays; black if there are none.
+    pub(crate) fn mean(&self) -> Sample {
+        Sample {
+            color: self.sum / f64::from(self.count.max(1)),
+            clear: self.clear / f64::from(self.seen.max(1)),
+        }
+    }
+
+    /// Traces the rays one by one: `more` appends the rays that come next, and none at the end.
+    pub(super) fn traced(
+        mut self,
+        mut more: impl FnMut(&mut Self, &mut FewRays),
+        mut trace: impl FnMut(&Ray) -> Color,
+    ) -> Self {
+        let mut rays = FewRays::new();
+        loop {
+            more(&mut self, &mut rays);
+            if rays.is_empty() {
+                return self;
+            }
+            for ray in rays.drain(..) {
+                let color = ray.as_ref().map_or(Color::BLACK, &mut trace);
+                self.add(&Sample::from(color), ray.is_some());
+            }
+        }
+    }
+}
