@@ -58,6 +58,7 @@ impl CrackleMetric {
         }
     }
 
+    #[inline(always)]
     fn distance_of(self, measure: f64) -> f64 {
         match self {
             Self::Manhattan => measure,
@@ -153,13 +154,20 @@ const INNER: usize = 27;
 
 impl Crackle {
     /// The value at `p`, cut off at 0 and 1.
+    // Not inline: its loops are many for the other patterns' function.
+    #[inline(never)]
     pub(super) fn value(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
         // Each metric has its own loop.
-        let nearest = match self.metric {
-            CrackleMetric::Manhattan => self.search(CrackleMetric::Manhattan, p),
-            CrackleMetric::Euclidean => self.search(CrackleMetric::Euclidean, p),
-            metric => self.search(metric, p),
-        };
+        match self.metric {
+            CrackleMetric::Manhattan => self.value_by(CrackleMetric::Manhattan, p, generator),
+            CrackleMetric::Euclidean => self.value_by(CrackleMetric::Euclidean, p, generator),
+            metric => self.value_by(metric, p, generator),
+        }
+    }
+
+    #[inline(always)]
+    fn value_by(&self, metric: CrackleMetric, p: DVec3, generator: NoiseGenerator) -> f64 {
+        let nearest = self.search(metric, p);
         if self.solid {
             return noise(nearest.center, generator);
         }
@@ -167,7 +175,7 @@ impl Crackle {
         let value = used
             .take(self.counting())
             .map(|(measure, factor)| match measure < f64::INFINITY {
-                true => self.metric.distance_of(measure) * factor,
+                true => metric.distance_of(measure) * factor,
                 // No point was nearer: the measures are no numbers.
                 false => f64::NAN,
             })
@@ -249,7 +257,6 @@ impl Crackle {
             }
             _ => self.nearest_inside(metric, p, home),
         };
-        let smaller = |a: f64, b: f64| if a < b { a } else { b };
         let outer = |g: &[f64; 5]| smaller(g[0], g[4]);
         let outer = smaller(smaller(outer(&gaps[0]), outer(&gaps[1])), outer(&gaps[2]));
         if least(outer) > nearest.measures[last] {
@@ -264,27 +271,40 @@ impl Crackle {
     }
 
     /// The nearest points of the 3³ cubes around a cube, by a metric without powers.
+    #[inline(always)]
     fn nearest_inside(&self, metric: CrackleMetric, p: DVec3, home: [i64; 3]) -> Nearest {
         let rest = metric.rest(self.offset);
         Points::around(home, |points| {
-            let (smallest, measures) = match metric {
-                CrackleMetric::Manhattan => {
+            let (measures, all) = match (metric, self.solid) {
+                (CrackleMetric::Manhattan, false) => {
+                    let measures =
+                        dispatch!(Simd::best(), isa => smallest::<_, true>(isa, points, p, rest).0);
+                    return Nearest {
+                        measures,
+                        center: p,
+                    };
+                }
+                (_, false) => {
+                    let measures = dispatch!(Simd::best(), isa => smallest::<_, false>(isa, points, p, rest).0);
+                    return Nearest {
+                        measures,
+                        center: p,
+                    };
+                }
+                (CrackleMetric::Manhattan, true) => {
                     dispatch!(Simd::best(), isa => smallest::<_, true>(isa, points, p, rest))
                 }
-                _ => dispatch!(Simd::best(), isa => smallest::<_, false>(isa, points, p, rest)),
+                (_, true) => {
+                    dispatch!(Simd::best(), isa => smallest::<_, false>(isa, points, p, rest))
+                }
             };
-            let mut nearest = Nearest::none(p);
-            for measure in smallest.into_iter().flatten() {
-                nearest.insert(measure, p);
-            }
-            if self.solid {
-                let all = measures.iter().flatten();
-                let found = all
-                    .zip(0..)
-                    .find(|(measure, _)| **measure == nearest.measures[0]);
-                nearest.center = found.map_or(p, |(_, n)| points.place(n));
-            }
-            nearest
+            let found = all
+                .iter()
+                .flatten()
+                .zip(0..)
+                .find(|(measure, _)| **measure == measures[0]);
+            let center = found.map_or(p, |(_, n)| points.place(n));
+            Nearest { measures, center }
         })
     }
 }
@@ -316,7 +336,7 @@ fn powers_of<I: Isa>(isa: I, gaps: &[[f64; 4]; 3], m: f64) -> [[f64; 4]; 3] {
     ]
 }
 
-/// The three smallest measures of each lane from `p` to the points, and all measures, by the Manhattan metric or the Euclidean one; `rest` is
+/// The three smallest measures from `p` to the points, and all measures, by the Manhattan metric or the Euclidean one; `rest` is
 /// the contribution of the offset.
 #[inline(always)]
 fn smallest<I: Isa, const MANHATTAN: bool>(
@@ -324,7 +344,7 @@ fn smallest<I: Isa, const MANHATTAN: bool>(
     points: &Points,
     p: DVec3,
     rest: f64,
-) -> ([[f64; 4]; 3], [[f64; 4]; CHUNKS]) {
+) -> ([f64; 3], [[f64; 4]; CHUNKS]) {
     let p = [isa.splat(p.x), isa.splat(p.y), isa.splat(p.z)];
     let rest = isa.splat(rest);
     let far = isa.splat(f64::INFINITY);
@@ -344,10 +364,36 @@ fn smallest<I: Isa, const MANHATTAN: bool>(
         second = isa.min(larger, second);
         third = isa.min(largest, third);
     }
-    (
-        [isa.store(first), isa.store(second), isa.store(third)],
-        measures,
-    )
+    // Of each lane there are three, in ascending order.
+    let (first, second, third) = (isa.store(first), isa.store(second), isa.store(third));
+    let [a, b, c, d] = [
+        [first[0], second[0], third[0]],
+        [first[1], second[1], third[1]],
+        [first[2], second[2], third[2]],
+        [first[3], second[3], third[3]],
+    ];
+    (merged(merged(a, b), merged(c, d)), measures)
+}
+
+/// The three smallest of twice three numbers in ascending order, without branches, which nobody could predict.
+#[inline(always)]
+fn merged(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    let crossed = smaller(larger(a[0], b[1]), larger(a[1], b[0]));
+    [
+        smaller(a[0], b[0]),
+        smaller(larger(a[0], b[0]), smaller(a[1], b[1])),
+        smaller(crossed, smaller(a[2], b[2])),
+    ]
+}
+
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// The measures of the three nearest points found so far in ascending order, and the nearest point.
@@ -440,6 +486,24 @@ impl Points {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn merging_finds_the_smallest() {
+        let triples: Vec<[f64; 3]> = (0..125)
+            .map(|n| {
+                [n / 25, n / 5 % 5, n % 5]
+                    .map(|k| if k == 4 { f64::INFINITY } else { f64::from(k) })
+            })
+            .filter(|t| t.is_sorted())
+            .collect();
+        for a in &triples {
+            for b in &triples {
+                let mut all = [*a, *b].concat();
+                all.sort_by(f64::total_cmp);
+                assert_eq!(merged(*a, *b)[..], all[..3], "{a:?} {b:?}");
+            }
+        }
+    }
 
     /// The value from all cubes, without skipping.
     fn slowly(crackle: &Crackle, p: DVec3) -> f64 {
