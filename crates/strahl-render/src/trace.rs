@@ -34,7 +34,6 @@ mod stages;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
-use point::Lanes;
 pub(crate) use point::Point;
 use slots::Slots;
 
@@ -269,7 +268,6 @@ impl<'s> TreeTracer<'s> {
         if self.transport.gather.is_some() {
             self.gathered.resize(self.nodes.len(), Color::BLACK);
         }
-        let (mut sums, mut numbers) = (ArrayVec::<Sample, PACKET>::new(), Lanes::new());
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
             let mut sum = node.local + node.reflected + node.transmitted;
@@ -284,13 +282,17 @@ impl<'s> TreeTracer<'s> {
                 observer.combined(index as u32, node.local, total);
             }
             let (kind, parent) = (node.kind, node.parent as usize);
-            let sample = match &mut self.coverage {
-                Some(coverage) => coverage.combine(index, node, total),
-                None => Sample::from(total),
-            };
+            if let Some(coverage) = &mut self.coverage {
+                let sample = coverage.combine(index, node, total);
+                if kind == RayKind::Primary {
+                    self.roots[parent % PACKET] = sample;
+                }
+            } else if kind == RayKind::Primary {
+                // Field by field: a sample would be copied as a whole, before the stores of its parts have ended.
+                let root = &mut self.roots[parent % PACKET];
+                (root.color, root.clear) = (total, 0.0);
+            }
             if kind == RayKind::Primary {
-                sums.push(sample);
-                numbers.push(parent);
                 continue;
             }
             let taken = node.share.of(total);
@@ -303,9 +305,6 @@ impl<'s> TreeTracer<'s> {
                 RayKind::Refraction => node.transmitted += taken,
                 RayKind::Gather => self.gathered[parent] += taken,
             }
-        }
-        for (number, sum) in numbers.iter().zip(&sums) {
-            self.roots[number % PACKET] = *sum;
         }
     }
 

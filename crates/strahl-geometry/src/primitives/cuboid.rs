@@ -99,14 +99,16 @@ impl Cuboid {
     #[inline]
     pub(crate) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
         let (o, d) = (ray.origin, ray.direction);
+        // In registers: a surface is copied as a whole, before the stores of its parts have ended.
+        let from = from.map(|surface| surface.facet);
         if d.cmpeq(DVec3::ZERO).any() {
             return self.span_along_faces(ray, from);
         }
         // All axes at once, which is half the work of one after the other.
         let mut at_min = ((self.min - o) / d).to_array();
         let mut at_max = ((self.max - o) / d).to_array();
-        if let Some(surface) = from {
-            let (axis, high) = (surface.facet as usize / 2, surface.facet % 2 == 1);
+        if let Some(facet) = from {
+            let (axis, high) = (facet as usize / 2, facet % 2 == 1);
             let ends = if high { &mut at_max } else { &mut at_min };
             if let Some(end) = ends.get_mut(axis) {
                 *end = 0.0;
@@ -146,12 +148,12 @@ impl Cuboid {
 
     /// [`Cuboid::span`] of rays that are parallel to a face.
     #[inline(never)]
-    fn span_along_faces(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+    fn span_along_faces(&self, ray: &Ray, from: Option<u32>) -> Option<Span> {
         let mut span = Span::LINE;
         for axis in 0..3 {
             let (o, d) = (ray.origin[axis], ray.direction[axis]);
             let (low, high) = (2 * axis as u32, 2 * axis as u32 + 1);
-            let starts_on = |facet| from.is_some_and(|surface| surface.facet == facet);
+            let starts_on = |facet| from == Some(facet);
             if d == 0.0 {
                 // A ray within a face is outside; NaN is never between.
                 let between = self.min[axis] < o && o < self.max[axis];
