@@ -59,7 +59,7 @@ impl PrimaryRays {
                 mesh.joined(pixel + number as usize * picture)?
             }
             MeshLayout::SideBySide => {
-                let width = self.width as usize;
+                let width = (self.width as usize).max(1);
                 let (row, column) = (pixel / width, pixel % width);
                 let count = mesh.meshes.len().max(1);
                 let share = (width / count).max(1);

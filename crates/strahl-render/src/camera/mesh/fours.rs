@@ -109,15 +109,17 @@ impl FourFaces {
 #[inline(always)]
 fn normal<I: Isa>(isa: I, [a, b, c]: [Vectors<I>; 3], front: CameraFront) -> Vectors<I> {
     let zero = isa.splat(0.0);
-    let (mut u, mut v, mut normal) = ([zero; 3], [zero; 3], [zero; 3]);
+    let (mut u, mut v) = ([zero; 3], [zero; 3]);
     for axis in 0..3 {
         u[axis] = isa.sub(c[axis], a[axis]);
         v[axis] = isa.sub(b[axis], a[axis]);
     }
-    for axis in 0..3 {
-        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-        normal[axis] = isa.sub(isa.mul(u[next], v[last]), isa.mul(v[next], u[last]));
-    }
+    // Their cross product.
+    let mut normal = [
+        isa.sub(isa.mul(u[1], v[2]), isa.mul(v[1], u[2])),
+        isa.sub(isa.mul(u[2], v[0]), isa.mul(v[2], u[0])),
+        isa.sub(isa.mul(u[0], v[1]), isa.mul(v[0], u[1])),
+    ];
     let [x, y, z] = normal;
     let squares = isa.add(isa.add(isa.mul(x, x), isa.mul(y, y)), isa.mul(z, z));
     let inverse = isa.div(isa.splat(1.0), isa.sqrt(squares));
