@@ -19,6 +19,13 @@ const TWO_BY_PI: f64 = 6.36619772367581382433e-01;
 const HALF_PI: f64 = 1.57079632673412561417e+00;
 /// π/2 without them.
 const HALF_PI_REST: f64 = 6.07710050650619224932e-11;
+/// The next 33 bits of π/2, and what is left behind them.
+const HALF_PI_NEXT: f64 = 6.07710050630396597660e-11;
+const HALF_PI_NEXT_REST: f64 = 2.02226624879595063154e-21;
+/// `libm` reduces angles below 9/4 π, which is less than this, in its own ways.
+const SMALL: f64 = 8.0;
+/// Larger angles it reduces with integers, from 2²⁰ π/2 = 1647099 on.
+const LARGE: f64 = 1.64e6;
 
 const SIN: [f64; 6] = [
     -1.66666666666666324348e-01,
@@ -41,10 +48,10 @@ const COS: [f64; 6] = [
 #[inline(always)]
 pub(super) fn sine(x: f64) -> f64 {
     let size = x.abs();
-    // `libm` does something else where angles are small (below π/4) or large (from 2²⁰ π/2), where they lie in the middle between two multiples
+    // `libm` does something else where angles are small (below π/4) or large ([`LARGE`]), where they lie in the middle between two multiples
     // (it may take the other one), and where they lie so close to a multiple that bits are lost (16 of them). The bounds are a little
     // narrower than its own.
-    if !(0.8..=1e6).contains(&size) {
+    if !(0.8..=LARGE).contains(&size) {
         return libm::sin(x);
     }
     let multiple = (x * TWO_BY_PI + ROUND) - ROUND;
@@ -110,8 +117,12 @@ impl<V: Copy> Reduced<V> {
         let multiple = isa.sub(isa.add(isa.mul(x, n(TWO_BY_PI)), n(ROUND)), n(ROUND));
         let exact = isa.sub(x, isa.mul(multiple, n(HALF_PI)));
         let rest = isa.mul(multiple, n(HALF_PI_REST));
-        let y = isa.sub(exact, rest);
-        let lost = isa.sub(isa.sub(exact, y), rest);
+        let mut y = isa.sub(exact, rest);
+        let mut lost = isa.sub(isa.sub(exact, y), rest);
+        let mut precise = isa.le(isa.mul(isa.abs(x), n(1.0 / 8192.0)), isa.abs(y));
+        if precise != 0b1111 {
+            precise |= refine(isa, x, multiple, exact, &mut y, &mut lost);
+        }
         let turns = isa.sub(isa.add(isa.mul(multiple, n(0.25)), n(ROUND)), n(ROUND));
         let (size, part) = (isa.abs(x), isa.abs(y));
         Self {
@@ -120,9 +131,9 @@ impl<V: Copy> Reduced<V> {
             cos: cos_near_zero(isa, y, lost),
             // The bounds are those of `sine`.
             usual: isa.le(n(0.8), size)
-                & isa.le(size, n(1e6))
+                & isa.le(size, n(LARGE))
                 & isa.le(part, n(0.7853))
-                & isa.le(isa.mul(size, n(1.0 / 8192.0)), part),
+                & precise,
         }
     }
 
@@ -165,6 +176,48 @@ impl<V: Copy> Reduced<V> {
         }
         isa.load(&values)
     }
+}
+
+/// Subtracts the multiple of π/2 with 33 bits more where `libm` does so: where more than 16 bits were lost (the exponents of the angle and of
+/// the difference tell). Returns the lanes that have the bits of `libm` now.
+#[inline(always)]
+fn refine<I: Isa>(
+    isa: I,
+    x: I::F64x4,
+    multiple: I::F64x4,
+    exact: I::F64x4,
+    y: &mut I::F64x4,
+    lost: &mut I::F64x4,
+) -> u32 {
+    let n = |number: f64| isa.splat(number);
+    let next = isa.mul(multiple, n(HALF_PI_NEXT));
+    let difference = isa.sub(exact, next);
+    let rest = isa.sub(
+        isa.mul(multiple, n(HALF_PI_NEXT_REST)),
+        isa.sub(isa.sub(exact, difference), next),
+    );
+    let finer = isa.sub(difference, rest);
+    let finer_lost = isa.sub(isa.sub(difference, finer), rest);
+    // With 49 bits lost `libm` goes on.
+    let far = 1.0 / (1u64 << 47) as f64;
+    let is_precise =
+        isa.lt(n(SMALL), isa.abs(x)) & isa.le(isa.mul(isa.abs(x), n(far)), isa.abs(finer));
+    let angles = isa.store(x);
+    let (mut values, mut rests) = (isa.store(*y), isa.store(*lost));
+    let (finer, finer_lost) = (isa.store(finer), isa.store(finer_lost));
+    for lane in 0..4 {
+        if exponent(angles[lane]) > exponent(values[lane]) + 16 {
+            (values[lane], rests[lane]) = (finer[lane], finer_lost[lane]);
+        }
+    }
+    (*y, *lost) = (isa.load(&values), isa.load(&rests));
+    is_precise
+}
+
+/// The exponent as it is stored.
+#[inline(always)]
+fn exponent(x: f64) -> u64 {
+    x.to_bits() >> 52 & 0x7ff
 }
 
 /// The sine of `y + lost`, `|y|` at most π/4.
@@ -235,6 +288,18 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             let unit = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
             angles.push(unit * f64::from(1 << (n % 24)));
+        }
+        // Where more bits are lost, the more the larger the angle is.
+        for n in 0..40_000 {
+            let large = 1.7e6 * f64::from(n) / 40_000.0;
+            let multiple = (large * TWO_BY_PI).round() * std::f64::consts::FRAC_PI_2;
+            angles.extend([
+                large,
+                -large,
+                multiple,
+                multiple + large * 1e-9,
+                multiple - 1e-5,
+            ]);
         }
         for simd in Simd::available() {
             for four_angles in angles.chunks(4) {
