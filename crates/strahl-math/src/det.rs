@@ -125,8 +125,15 @@ fn whole(exponent: f64) -> Option<u32> {
 }
 
 /// Whole exponents from 0 to 64 by repeated squaring.
+#[inline]
 fn small_power(base: f64, exponent: f64) -> Option<f64> {
-    let (mut result, mut square, mut bits) = (1.0, base, whole(exponent)?);
+    Some(squared_again(base, whole(exponent)?))
+}
+
+/// A power by repeated squaring.
+#[inline]
+fn squared_again(base: f64, exponent: u32) -> f64 {
+    let (mut result, mut square, mut bits) = (1.0, base, exponent);
     while bits > 0 {
         if bits & 1 == 1 {
             result *= square;
@@ -134,7 +141,34 @@ fn small_power(base: f64, exponent: f64) -> Option<f64> {
         square *= square;
         bits >>= 1;
     }
-    Some(result)
+    result
+}
+
+/// An exponent that is known before the bases are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponent(Kind);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// From 0 to 64.
+    Whole(u32),
+    Other(f64),
+}
+
+impl Exponent {
+    /// The exponent of this value.
+    pub fn new(exponent: f64) -> Self {
+        Self(whole(exponent).map_or(Kind::Other(exponent), Kind::Whole))
+    }
+
+    /// `base` to the power of this exponent, with the bits of [`pow`].
+    #[inline]
+    pub fn of(self, base: f64) -> f64 {
+        match self.0 {
+            Kind::Whole(exponent) => squared_again(base, exponent),
+            Kind::Other(exponent) => power::pow(base, exponent),
+        }
+    }
 }
 
 /// Cube root.
@@ -144,6 +178,17 @@ pub fn cbrt(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn powers_of_known_exponents_have_the_same_bits() {
+        for exponent in [0.0, 1.0, 40.0, 64.0, 65.0, 0.025, -3.0, 2.5, f64::INFINITY] {
+            let known = super::Exponent::new(exponent);
+            for base in [0.0, 0.3, 1.0, 1.5, -2.0, 1e300, f64::NAN] {
+                let (a, b) = (known.of(base), super::pow(base, exponent));
+                assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
+            }
+        }
+    }
+
     #[test]
     fn acosh_of_a_large_negative_number_is_nan() {
         assert!(super::acosh(-234504.77989254522).is_nan());

@@ -1,5 +1,6 @@
 use crate::blocks::dot;
 use std::ops::ControlFlow;
+use strahl_math::det::Exponent;
 use strahl_math::error::ROUNDOFF;
 use strahl_math::roots::find_root;
 use strahl_math::{DVec3, det};
@@ -12,8 +13,20 @@ use strahl_simd::Isa;
 /// Powers are taken of ratios below 1 only, so nothing overflows and large powers, those of sharp edges, lose no digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gauge {
+    /// The norm of x and y.
+    outline: Norm,
+    /// The norm of that one and z.
+    section: Norm,
+}
+
+/// The norm `(a^p + b^p)^(1/p)` of two numbers that are not negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Norm {
     p: f64,
-    q: f64,
+    power: Exponent,
+    root: Exponent,
+    /// Ratios of the smaller number to the larger one up to this have a power that vanishes beside 1.
+    negligible: f64,
 }
 
 /// A range of numbers that are not negative.
@@ -47,26 +60,30 @@ struct Stretch {
 const MAX_DEPTH: u32 = 40;
 
 impl Gauge {
-    pub(super) const fn new(p: f64, q: f64) -> Self {
-        Self { p, q }
+    pub(super) fn new(p: f64, q: f64) -> Self {
+        Self {
+            outline: Norm::new(p),
+            section: Norm::new(q),
+        }
     }
 
     /// Whether the body is convex; the gauge is a norm then.
     pub(super) fn is_convex(&self) -> bool {
-        self.p >= 1.0 && self.q >= 1.0
+        self.outline.p >= 1.0 && self.section.p >= 1.0
     }
 
     /// A bound on the relative error of the value: roots of small exponents are powers that magnify errors.
     pub(super) fn error(&self) -> f64 {
-        6.0 * ROUNDOFF * (2.0 + 1.0 / self.p + 1.0 / self.q)
+        6.0 * ROUNDOFF * (2.0 + 1.0 / self.outline.p + 1.0 / self.section.p)
     }
 
     /// The value and its derivatives.
-    #[inline]
+    // Inline: Newton's last step asks for the value alone.
+    #[inline(always)]
     pub(super) fn value_and_gradient(&self, point: DVec3) -> (f64, DVec3) {
         let a = point.abs();
-        let (g, by_x, by_y) = combine(self.p, a.x, a.y);
-        let (value, by_g, by_z) = combine(self.q, g, a.z);
+        let (g, by_x, by_y) = self.outline.combine(a.x, a.y);
+        let (value, by_g, by_z) = self.section.combine(g, a.z);
         let gradient = DVec3::new(by_g * by_x, by_g * by_y, by_z);
         // At cusps, where a derivative is infinite, only its direction is left.
         let gradient = if gradient.is_finite() {
@@ -76,6 +93,19 @@ impl Gauge {
             DVec3::new(steep(gradient.x), steep(gradient.y), steep(gradient.z))
         };
         (value, gradient * point.signum())
+    }
+
+    /// The value, with the bits of [`Gauge::value_and_gradient`], where it takes no powers: on the flat parts of bodies with sharp edges.
+    #[inline]
+    pub(super) fn plain_value(&self, point: DVec3) -> Option<f64> {
+        let a = point.abs();
+        self.section.plain(self.outline.plain(a.x, a.y)?, a.z)
+    }
+
+    /// The value at a corner of the box around the body: no point of the box has a greater one.
+    pub(super) fn at_a_corner(&self) -> f64 {
+        let (g, ..) = self.outline.combine(1.0, 1.0);
+        self.section.combine(g, 1.0).0
     }
 
     /// The value and its derivative along a direction.
@@ -96,8 +126,8 @@ impl Gauge {
     ) -> (I::F64x4, I::F64x4, u32) {
         let (zero, turned) = (isa.splat(0.0), isa.splat(-1.0));
         let (a, b, c) = (isa.abs(x), isa.abs(y), isa.abs(z));
-        let (g, by_x, by_y) = combine_four(isa, self.p, a, b);
-        let (value, by_g, by_z) = combine_four(isa, self.q, g, c);
+        let (g, by_x, by_y) = combine_four(isa, self.outline.p, a, b);
+        let (value, by_g, by_z) = combine_four(isa, self.section.p, g, c);
         let (by_x, by_y) = (isa.mul(by_g, by_x), isa.mul(by_g, by_y));
         let finite = isa.splat(f64::MAX);
         let known = isa.lt(zero, a)
@@ -117,12 +147,12 @@ impl Gauge {
     /// Bounds of the derivative along the line, where the magnitudes of the coordinates are within bounds and change at these
     /// rates.
     fn slope(&self, [x, y, z]: &[Bounds; 3], pace: DVec3) -> Bounds {
-        let (by_x, by_y) = derivative_bounds(self.p, *x, *y);
+        let (by_x, by_y) = self.outline.derivative_bounds(*x, *y);
         let g = Bounds {
-            low: combine(self.p, x.low, y.low).0,
-            high: combine(self.p, x.high, y.high).0,
+            low: self.outline.combine(x.low, y.low).0,
+            high: self.outline.combine(x.high, y.high).0,
         };
-        let (by_g, by_z) = derivative_bounds(self.q, g, *z);
+        let (by_g, by_z) = self.section.derivative_bounds(g, *z);
         let product = |a: Bounds, b: Bounds| Bounds {
             low: a.low * b.low,
             high: a.high * b.high,
@@ -251,27 +281,65 @@ impl GaugeLine {
     }
 }
 
-/// `(a^p + b^p)^(1/p)` for numbers that are not negative, and its derivatives by both.
-#[inline]
-fn combine(p: f64, a: f64, b: f64) -> (f64, f64, f64) {
-    let (large, small) = if a > b { (a, b) } else { (b, a) };
-    if large == 0.0 {
-        return (a + b, 1.0, 1.0);
+impl Norm {
+    fn new(p: f64) -> Self {
+        // Half of what would still vanish, for rounding.
+        let negligible = det::pow(0.5, f64::from(f64::MANTISSA_DIGITS + 1) / p);
+        Self {
+            p,
+            power: Exponent::new(p),
+            root: Exponent::new(1.0 / p),
+            negligible,
+        }
     }
-    let ratio = small / large;
-    let power = raise(ratio, p);
-    let root = raise(1.0 + power, 1.0 / p);
-    let by_large = root / (1.0 + power);
-    let by_small = by_large * steepness(p, ratio, power);
-    let value = large * root;
-    if a > b {
-        (value, by_large, by_small)
-    } else {
-        (value, by_small, by_large)
+
+    /// The norm and its derivatives by both numbers.
+    #[inline]
+    fn combine(&self, a: f64, b: f64) -> (f64, f64, f64) {
+        let p = self.p;
+        let (large, small) = if a > b { (a, b) } else { (b, a) };
+        if large == 0.0 {
+            return (a + b, 1.0, 1.0);
+        }
+        let ratio = small / large;
+        let power = raise(ratio, p, self.power);
+        let sum = 1.0 + power;
+        // All roots of 1 are 1.
+        let root = if sum == 1.0 {
+            1.0
+        } else {
+            raise(sum, 1.0 / p, self.root)
+        };
+        let by_large = root / sum;
+        let by_small = by_large * steepness(p, ratio, power);
+        let value = large * root;
+        if a > b {
+            (value, by_large, by_small)
+        } else {
+            (value, by_small, by_large)
+        }
+    }
+
+    /// The norm, with the bits of [`Norm::combine`], where one number vanishes beside the other.
+    #[inline]
+    fn plain(&self, a: f64, b: f64) -> Option<f64> {
+        let (large, small) = if a > b { (a, b) } else { (b, a) };
+        (small / large <= self.negligible).then_some(large)
+    }
+
+    /// Bounds on the derivatives of the norm over ranges of both numbers.
+    fn derivative_bounds(&self, a: Bounds, b: Bounds) -> (Bounds, Bounds) {
+        // (a / value)^(p - 1) is monotone in the ratio of a and b.
+        let (_, a_first, b_last) = self.combine(a.low, b.high);
+        let (_, a_last, b_first) = self.combine(a.high, b.low);
+        (
+            Bounds::between(a_first, a_last),
+            Bounds::between(b_first, b_last),
+        )
     }
 }
 
-/// [`combine`] of four pairs, all above zero.
+/// [`Norm::combine`] of four pairs, all above zero.
 #[inline(always)]
 fn combine_four<I: Isa>(
     isa: I,
@@ -307,24 +375,13 @@ fn steepness(p: f64, ratio: f64, power: f64) -> f64 {
     }
 }
 
-/// Bounds on the derivatives of [`combine`] over ranges of its arguments.
-fn derivative_bounds(p: f64, a: Bounds, b: Bounds) -> (Bounds, Bounds) {
-    // (a / value)^(p - 1) is monotone in the ratio of a and b.
-    let (_, a_first, b_last) = combine(p, a.low, b.high);
-    let (_, a_last, b_first) = combine(p, a.high, b.low);
-    (
-        Bounds::between(a_first, a_last),
-        Bounds::between(b_first, b_last),
-    )
-}
-
 /// A power of a number that is not negative.
 #[inline]
-fn raise(base: f64, exponent: f64) -> f64 {
+fn raise(base: f64, exponent: f64, known: Exponent) -> f64 {
     if exponent == 0.5 {
         base.sqrt()
     } else {
-        det::pow(base, exponent)
+        known.of(base)
     }
 }
 
@@ -359,6 +416,43 @@ mod tests {
                 let slope = (value(point + h) - value(point - h)) / 2e-6;
                 assert!((slope - gradient[axis]).abs() < 1e-7, "{p} {q} {axis}");
             }
+        }
+    }
+
+    #[test]
+    fn values_without_powers_have_the_same_bits() {
+        let mut plain = 0;
+        for p in [0.3, 1.0, 2.0, 7.3, 40.0, 1e3, 1e9, 1e17] {
+            let (norm, gauge) = (Norm::new(p), Gauge::new(p, 2.0 * p));
+            for step in 0..4000 {
+                // Ratios around the largest that is negligible, and all others.
+                let ratio = match step % 2 {
+                    0 => norm.negligible * (1.0 + f64::from(step - 2000) * 1e-9),
+                    _ => f64::from(step) / 4000.0,
+                };
+                let point = DVec3::new(ratio * 0.7, -0.7, 0.7 - 2e-4 * f64::from(step));
+                if let Some(value) = gauge.plain_value(point) {
+                    assert_eq!(value, gauge.value_and_gradient(point).0, "{p} {point}");
+                    plain += 1;
+                }
+                assert_eq!(raise(1.0, 1.0 / p, norm.root), 1.0);
+            }
+        }
+        assert!(plain > 2000, "{plain}");
+    }
+
+    #[test]
+    fn no_point_of_the_box_is_beyond_its_corner() {
+        for (p, q) in [(1.0, 1.0), (2.0, 40.0), (1.3, 1.1), (1e9, 60.0)] {
+            let gauge = Gauge::new(p, q);
+            let corner = gauge.at_a_corner() * (1.0 + gauge.error());
+            for step in 0..1000 {
+                let t = f64::from(step);
+                let point = DVec3::new((t * 0.37).sin(), (t * 0.71).cos(), (t * 0.13).sin());
+                let most = point.abs().max_element();
+                assert!(gauge.value_and_gradient(point).0 <= most * corner);
+            }
+            assert!(gauge.value_and_gradient(DVec3::ONE).0 <= corner);
         }
     }
 

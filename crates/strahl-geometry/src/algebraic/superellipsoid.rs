@@ -27,6 +27,8 @@ pub struct Superellipsoid {
     e: f64,
     n: f64,
     gauge: Gauge,
+    /// A cube from minus this to this is inside for certain, if the body is convex.
+    core: f64,
 }
 
 /// The part of a ray in the box around the body: the point at `s` is `start + s direction`, its parameter `t + s`.
@@ -38,16 +40,22 @@ struct Segment {
     length: f64,
 }
 
+/// Points up to this far away are known well enough to tell whether they are in the core of the body.
+const NEAR: f64 = 16.0;
+
 /// Newton's method needs a few steps, at a grazing ray one for each bit.
 const MAX_STEPS: u32 = 100;
 
 impl Superellipsoid {
     /// The body of POV-Ray's two numbers.
     pub fn new(e: f64, n: f64) -> Self {
+        let gauge = Gauge::new(2.0 / e, 2.0 / n);
         Self {
             e,
             n,
-            gauge: Gauge::new(2.0 / e, 2.0 / n),
+            gauge,
+            // The gauge grows with each coordinate, and in proportion to all of them.
+            core: (1.0 - 1e-6) / gauge.at_a_corner(),
         }
     }
 
@@ -107,6 +115,16 @@ impl Superellipsoid {
         let Some(segment) = self.segment(ray, on_surface) else {
             return;
         };
+        if !on_surface && self.starts_in_core(ray, question.range.min) {
+            // Where the ray has entered the body does not matter.
+            if let Some(exit) = self.leave(1.0, &segment) {
+                if visit(Event::Start { inside: true }).is_continue() {
+                    // The last event.
+                    let _ = self.cross(ray, segment.t + exit, false, question, visit);
+                }
+                return;
+            }
+        }
         let Segment {
             start,
             direction,
@@ -132,28 +150,59 @@ impl Superellipsoid {
                 return;
             }
         }
-        let mut cross = |s: f64, enters: bool| {
-            let t = t + s;
-            let t_error = if question.errors {
-                self.t_error(ray, t)
-            } else {
-                0.0
-            };
-            visit(Event::Crossing { t, t_error, enters })
-        };
+        let mut cross =
+            |s: f64, enters: bool| self.cross(ray, t + s, enters, question, &mut *visit);
         // The result only matters while visiting.
         let _ = if self.gauge.is_convex() {
-            self.walk_convex(&line, on_surface, length, &mut cross)
+            self.walk_convex(&line, on_surface, &segment, &mut cross)
         } else {
             line.crossings(length, &mut cross)
         };
+    }
+
+    /// Reports a crossing.
+    #[inline]
+    fn cross(
+        &self,
+        ray: &Ray,
+        t: f64,
+        enters: bool,
+        question: &Question,
+        visit: &mut dyn FnMut(Event) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let t_error = if question.errors {
+            self.t_error(ray, t)
+        } else {
+            0.0
+        };
+        visit(Event::Crossing { t, t_error, enters })
+    }
+
+    /// Whether the body is convex and contains this point of a ray so deep inside that no rounding can tell otherwise.
+    #[inline]
+    fn starts_in_core(&self, ray: &Ray, t: f64) -> bool {
+        let way = ray.direction * t;
+        let is_near = |v: DVec3| v.abs().max_element() <= NEAR;
+        (ray.origin + way).abs().max_element() <= self.core
+            && is_near(ray.origin)
+            && is_near(way)
+            && self.gauge.is_convex()
+    }
+
+    /// How far along the segment the ray leaves the body, if it is convex: the steps begin at the segment's end.
+    #[inline]
+    fn leave(&self, level: f64, segment: &Segment) -> Option<f64> {
+        let (direction, length) = (segment.direction, segment.length);
+        let end = segment.start + direction * length;
+        self.approach(level, end, -direction, length)
+            .map(|s| length - s)
     }
 
     fn walk_convex(
         &self,
         line: &GaugeLine,
         on_surface: bool,
-        length: f64,
+        segment: &Segment,
         cross: &mut impl FnMut(f64, bool) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let (start, direction) = (line.start, line.direction);
@@ -163,16 +212,13 @@ impl Superellipsoid {
             }
             0.0
         } else {
-            let Some(enter) = self.approach(1.0, start, direction, length) else {
+            let Some(enter) = self.approach(1.0, start, direction, segment.length) else {
                 return ControlFlow::Continue(());
             };
             cross(enter, true)?;
             enter
         };
-        let end = start + direction * length;
-        let exit = self
-            .approach(line.level, end, -direction, length)
-            .map_or(enter, |s| length - s);
+        let exit = self.leave(line.level, segment).unwrap_or(enter);
         // A chord shorter than the rounding error has no length. From the surface it ends where rounding no longer hides on
         // which side the ray is.
         let least = enter + line.from;
@@ -196,7 +242,15 @@ impl Superellipsoid {
     fn approach(&self, level: f64, start: DVec3, direction: DVec3, length: f64) -> Option<f64> {
         let mut s = 0.0;
         for _ in 0..MAX_STEPS {
-            let (value, slope) = self.gauge.along(start + direction * s, direction);
+            let point = start + direction * s;
+            if self
+                .gauge
+                .plain_value(point)
+                .is_some_and(|value| value <= level)
+            {
+                return Some(s);
+            }
+            let (value, slope) = self.gauge.along(point, direction);
             if value <= level {
                 return Some(s);
             }
@@ -377,6 +431,33 @@ mod tests {
         let mut out = Crossings::default();
         shape.crossings(ray, Interval::LINE, None, &mut Scratch::default(), &mut out);
         out.list.iter().map(|c| c.hit.t).collect()
+    }
+
+    #[test]
+    fn rays_from_the_core_leave_where_whole_lines_do() {
+        for (e, n) in [(0.05, 0.05), (1.0, 1.0), (0.3, 2.0), (2.0, 0.01)] {
+            let shape = Superellipsoid::new(e, n);
+            let mut from_core = 0;
+            for step in 0..2000 {
+                let t = f64::from(step);
+                let origin = DVec3::new((t * 0.37).sin(), (t * 0.71).cos(), (t * 0.13).sin());
+                let direction = DVec3::new((t * 1.1).cos(), (t * 0.9).sin(), (t * 2.3).cos());
+                let ray = Ray::new(origin, direction);
+                let min = (t * 1.7).sin();
+                from_core += u32::from(shape.starts_in_core(&ray, min));
+                let (mut line, mut part) = (Crossings::default(), Crossings::default());
+                let scratch = &mut Scratch::default();
+                shape.crossings(&ray, Interval::LINE, None, scratch, &mut line);
+                let range = Interval::new(min, f64::INFINITY);
+                shape.crossings(&ray, range, None, scratch, &mut part);
+                let at = |c: &crate::Crossing| (c.hit.t, c.side, c.t_error);
+                let later = line.list.iter().filter(|c| c.hit.t > min).map(at);
+                assert!(later.eq(part.list.iter().map(at)), "{e} {n} {ray:?}");
+                let before = line.list.iter().filter(|c| c.hit.t <= min).count();
+                assert_eq!(part.inside_at_start, before == 1);
+            }
+            assert!(from_core > 50, "{e} {n}: {from_core}");
+        }
     }
 
     #[test]

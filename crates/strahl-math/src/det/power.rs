@@ -20,6 +20,9 @@ const STEPS: f64 = 184.6649652337873;
 /// Adding and subtracting 1.5 * 2^52 rounds to an integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
+/// `e` to the power of this is less than half of the smallest number above zero, which is rounded to zero.
+const NOTHING: f64 = -746.0;
+
 /// Whether a number is positive, finite and not subnormal.
 #[inline]
 fn is_usual(x: f64) -> bool {
@@ -98,6 +101,10 @@ pub(super) fn pow(base: f64, exponent: f64) -> f64 {
     let product = e * l;
     let rest = (exponent - e) * l + exponent * (high - l + low);
     if !(product > -700.0 && product < 700.0) {
+        // Highlights of small lights: most of their powers are less than half of the smallest number.
+        if product < NOTHING {
+            return 0.0;
+        }
         return libm::pow(base, exponent);
     }
     exp_parts(product, rest)
