@@ -74,7 +74,9 @@ impl Candidate {
 }
 
 /// More crossings are not sorted out one by one.
-type Candidates = ArrayVec<Candidate, 16>;
+type Candidates = ArrayVec<Candidate, MOST>;
+
+const MOST: usize = 16;
 
 fn facet(index: usize) -> SurfaceId {
     SurfaceId {
@@ -149,17 +151,28 @@ impl Revolution<'_> {
             start.t = [0.0; 2];
             return;
         }
+        // Those that may be nearest first: the others need not be computed.
+        let mut order: ArrayVec<usize, MOST> = (0..list.len())
+            .filter(|index| self.run(list[*index].facet) == self.run(from.facet))
+            .collect();
+        order.sort_by(|a, b| {
+            let distance = |index: usize| list[index].least_distance();
+            distance(*a).total_cmp(&distance(*b))
+        });
         let mut nearest: Option<(usize, f64)> = None;
-        for (index, candidate) in list.iter_mut().enumerate() {
-            let is_farther = |t: f64| nearest.is_some_and(|(_, best)| best <= t);
-            let same_run = self.run(candidate.facet) == self.run(from.facet);
-            if !same_run || is_farther(candidate.least_distance()) {
-                continue;
+        for index in order {
+            let candidate = &mut list[index];
+            if nearest.is_some_and(|(_, best)| best < candidate.least_distance()) {
+                break;
             }
             self.settle(line, candidate);
             let hit = candidate.hit(candidate.meeting.approach);
-            if !is_farther(hit.t.abs()) && near_the_start(ray, &hit, size, self.normal(ray, &hit)) {
-                nearest = Some((index, hit.t.abs()));
+            let t = hit.t.abs();
+            // Of those at one distance the first one counts.
+            let is_nearer =
+                nearest.is_none_or(|(other, best)| t < best || t == best && index < other);
+            if is_nearer && near_the_start(ray, &hit, size, self.normal(ray, &hit)) {
+                nearest = Some((index, t));
             }
         }
         if let Some((index, _)) = nearest
