@@ -34,9 +34,7 @@ impl Csg {
                 .all(|leaf| leaf.has_stays() || leaf.is_listed())
             && nodes.iter().all(|node| {
                 let planes = node.half_spaces.as_ref().map_or(0, |planes| planes.len());
-                node.hierarchy.is_none()
-                    && planes <= MOST_PLANES
-                    && node.kind != Kind::Operation(Rule::Union)
+                planes <= MOST_PLANES && node.kind != Kind::Operation(Rule::Union)
             })
     }
 }

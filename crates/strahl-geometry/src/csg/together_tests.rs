@@ -18,7 +18,11 @@ fn node(random: &mut Random, lattice: bool, depth: u32, tag: &mut u32) -> CsgNod
         }
         return operand(random, lattice, *tag);
     }
-    let count = 2 + random.below(3);
+    // Sometimes many operands, for which there is a hierarchy.
+    let count = match random.below(8) {
+        0 => 12,
+        _ => 2 + random.below(3),
+    };
     let mut operands: Vec<CsgNode> = (0..count)
         .map(|_| node(random, lattice, depth - 1, tag))
         .collect();
