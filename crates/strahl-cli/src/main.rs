@@ -32,13 +32,14 @@ use clap::{CommandFactory, FromArgMatches};
 use report::Reporter;
 use std::mem::ManuallyDrop;
 use std::process::ExitCode;
-use strahl::memory::Bounded;
+use strahl::memory::{Bounded, use_large_pages};
 
 /// Counts all memory of the program, for `--max-memory`.
 #[global_allocator]
 static MEMORY: Bounded = Bounded::new();
 
 fn main() -> ExitCode {
+    use_large_pages();
     if cfg!(panic = "abort") {
         end_after_panics();
     }

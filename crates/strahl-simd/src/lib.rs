@@ -13,7 +13,7 @@
 //! # Safety
 //! This crate contains nearly all `unsafe` code of the workspace. A value of a level's type ([`Avx2`], [`Avx512`], ...) can
 //! only be obtained by detection, so holding one proves that its instructions exist. Every `unsafe` block here relies on that,
-//! except the one that asks for large pages ([`gather_pages`]) and those of the allocator with a limit ([`memory`]).
+//! except those that ask for large pages ([`gather_pages`], [`memory::use_large_pages`]) and those of the allocator with a limit ([`memory`]).
 
 mod level;
 pub mod memory;

@@ -7,6 +7,8 @@
     reason = "an allocator can't be written without, see the crate's documentation"
 )]
 
+pub use crate::pages::use_large_pages;
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::OnceLock;
