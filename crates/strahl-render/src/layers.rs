@@ -454,6 +454,15 @@ pub(crate) fn faces(paint: &TexturePaint<'_>, l: DVec3) -> bool {
         .any(|layer| layer.normal.dot(l) > 0.0 || layer.finish.diffuse_back != 0.0)
 }
 
+/// Whether light from the direction `l` may show on any layer, by the finishes' own highlights; `false` is certain.
+pub(crate) fn shows_light_from(paint: &TexturePaint<'_>, v: DVec3, l: DVec3) -> bool {
+    paint.layers.iter().any(|layer| {
+        layer
+            .finish
+            .shows_light_from(layer.body, layer.normal, l, v)
+    })
+}
+
 /// The surface's own light, which is not below zero although `crand` may subtract more than there is.
 pub(crate) fn grained(paint: &TexturePaint<'_>, light: Color) -> Color {
     if paint.layers.iter().all(|layer| layer.finish.crand == 0.0) {

@@ -313,16 +313,12 @@ impl PovFinish {
         if self.phong != 0.0 {
             let cos = cosine(model.unwrap_or(ShadingModel::Phong));
             parts.phong_cos = cos;
-            if cos > 0.0 {
-                parts.phong = self.phong * det::pow(cos, self.phong_size);
-            }
+            parts.phong = self.phong * highlight(cos, self.phong_size);
         }
         if self.specular != 0.0 {
             let cos = cosine(model.unwrap_or(ShadingModel::BlinnPhong));
             parts.specular_cos = cos;
-            if cos > 0.0 {
-                parts.specular = self.specular * det::pow(cos, self.highlight_power());
-            }
+            parts.specular = self.specular * highlight(cos, self.highlight_power());
         }
         parts
     }
@@ -330,11 +326,36 @@ impl PovFinish {
     /// Whether light of a light source may show on a layer whose colour times opacity is `body`; `false` is certain.
     #[inline]
     pub fn shows_lights(&self, body: Color) -> bool {
+        self.scatters(body) || self.phong != 0.0 || self.specular != 0.0
+    }
+
+    /// Whether such a layer may scatter light.
+    #[inline]
+    fn scatters(&self, body: Color) -> bool {
         let scatters = self.diffuse != 0.0 || self.diffuse_back != 0.0;
         // Grain takes the colour without its opacity.
         scatters && (!body.is_black() || self.crand != 0.0)
-            || self.phong != 0.0
-            || self.specular != 0.0
+    }
+
+    /// The same for light from the direction `to_light`: what shows nothing but highlights, such as glass, shows few lights; `false` is certain.
+    #[inline]
+    pub fn shows_light_from(
+        &self,
+        body: Color,
+        n: DVec3,
+        to_light: DVec3,
+        to_viewer: DVec3,
+    ) -> bool {
+        self.scatters(body)
+            || self.phong != 0.0 && {
+                let cos = crate::reflect(n, to_viewer).dot(to_light);
+                !highlight_vanishes(cos, self.phong_size)
+            }
+            || self.specular != 0.0 && {
+                let h = to_light + to_viewer;
+                let cos = cosine_of(n.x, n.y, n.z, h.x, h.y, h.z);
+                !highlight_vanishes(cos, self.highlight_power())
+            }
     }
 
     /// The tint of highlights by `metallic`, for a surface of this pigment.
@@ -365,6 +386,23 @@ impl PovFinish {
             });
         self.crand * ((hash >> 11) as f64 / (1u64 << 53) as f64)
     }
+}
+
+/// A power of a cosine; 0 where the cosine isn't above zero, and where [`highlight_vanishes`].
+#[inline]
+fn highlight(cos: f64, power: f64) -> f64 {
+    match highlight_vanishes(cos, power) {
+        true => 0.0,
+        false => det::pow(cos, power),
+    }
+}
+
+/// Whether a highlight is left out: its cosine isn't above zero, or the power of the cosine is less than 2⁻²⁴⁹, which no picture can show.
+///
+/// No power is needed to tell: ln x < 2 (x - 1) / (x + 1) for 0 < x < 1.
+#[inline]
+fn highlight_vanishes(cos: f64, power: f64) -> bool {
+    cos <= 0.0 || power * (2.0 * (1.0 - cos)) > 173.0 * (1.0 + cos)
 }
 
 /// The cosine between a unit vector and another vector; 0 if that is zero.

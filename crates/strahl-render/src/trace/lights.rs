@@ -150,7 +150,7 @@ impl<'s> TreeTracer<'s> {
         // Points of an area light with `area_illumination` may be above the horizon where its centre is not.
         let may_face = self.faces(point, sample.l, n_dot_l)
             || light.area.is_some_and(|area| area.illumination);
-        if may_face && point.surface.shows_lights {
+        if may_face && point.surface.shows_lights && self.may_show(point, light, &sample) {
             arriving.push(Arriving {
                 lane,
                 sample,
@@ -430,6 +430,16 @@ impl<'s> TreeTracer<'s> {
         } else {
             layers::faces(&point.paint, l)
         }
+    }
+
+    /// Whether a light may show on a surface that shows some lights; `false` is certain.
+    #[inline]
+    fn may_show(&self, point: &Point<'_>, light: &Light, sample: &LightSample) -> bool {
+        let several_directions = light.area.is_some_and(|area| area.illumination);
+        several_directions
+            || point.paint.layers.is_empty()
+            || self.settings.force_shading.is_some()
+            || layers::shows_light_from(&point.paint, point.surface.v, sample.l)
     }
 
     /// The light that a surface reflects if light arrives from the unit direction `l`: the diffuse part and the highlight.

@@ -301,3 +301,59 @@ fn finishes_without_diffuse_light_and_highlights_show_no_lights() {
     let grainy = with(|f| (f.diffuse, f.crand) = (0.1, 0.1));
     assert!(grainy.shows_lights(Color::BLACK));
 }
+
+#[test]
+fn light_that_does_not_show_makes_no_highlight() {
+    let (normal, viewer) = (DVec3::Z, DVec3::new(0.6, 0.0, 0.8));
+    let finishes = [
+        PovFinish {
+            specular: 1.0,
+            roughness: 0.001,
+            ..dull()
+        },
+        PovFinish {
+            phong: 1e12,
+            phong_size: 400.0,
+            ..dull()
+        },
+        PovFinish {
+            phong: 0.5,
+            specular: 0.5,
+            roughness: 0.1,
+            ..dull()
+        },
+    ];
+    for (finish, least) in finishes.iter().zip([1000, 1000, 0]) {
+        let mut hidden = 0;
+        for step in 0..2000 {
+            let angle = f64::from(step) / 2000.0 * std::f64::consts::TAU;
+            let light = DVec3::new(det::cos(angle), 0.0, det::sin(angle));
+            let shows = finish.shows_light_from(Color::BLACK, normal, light, viewer);
+            let parts = finish.highlights(normal, light, viewer, None);
+            assert_eq!(shows, parts.phong + parts.specular > 0.0, "{angle}");
+            hidden += usize::from(!shows);
+        }
+        assert!(hidden >= least, "{hidden}");
+    }
+    let matt = PovFinish {
+        diffuse: 0.1,
+        ..dull()
+    };
+    assert!(matt.shows_light_from(PIGMENT, normal, normal, viewer));
+    assert!(!matt.shows_light_from(Color::BLACK, normal, normal, viewer));
+}
+
+#[test]
+fn highlights_that_vanish_are_small() {
+    let mut vanishing = 0;
+    for power in [0.5, 64.0, 64.5, 100.0, 400.0, 1e3, 1e5, f64::INFINITY] {
+        for step in 1..4000 {
+            let cos = f64::from(step) / 4000.0;
+            if highlight_vanishes(cos, power) {
+                assert!(det::pow(cos, power) < 2.0f64.powi(-249), "{cos} {power}");
+                vanishing += 1;
+            }
+        }
+    }
+    assert!(vanishing > 10_000, "{vanishing}");
+}
