@@ -88,7 +88,7 @@ pub(crate) fn render(
             command
         }
         Program::Strahl => {
-            let mut command = Command::new(crate::bench::strahl_binary()?);
+            let mut command = Command::new(crate::bench::installed_strahl()?);
             command
                 .arg("render")
                 .arg(scene)
