@@ -144,29 +144,25 @@ fn squared_again(base: f64, exponent: u32) -> f64 {
     result
 }
 
-/// An exponent that is known before the bases are.
+/// How powers with an exponent are found, for an exponent that is known before the bases are.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exponent(Kind);
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    /// From 0 to 64.
-    Whole(u32),
-    Other(f64),
-}
+pub struct Exponent(u8);
 
 impl Exponent {
-    /// The exponent of this value.
+    /// Not a whole number from 0 to 64.
+    const OTHER: u8 = u8::MAX;
+
+    /// What is known of this exponent.
     pub fn new(exponent: f64) -> Self {
-        Self(whole(exponent).map_or(Kind::Other(exponent), Kind::Whole))
+        Self(whole(exponent).map_or(Self::OTHER, |exponent| exponent as u8))
     }
 
-    /// `base` to the power of this exponent, with the bits of [`pow`].
+    /// `base` to the power of the exponent given to [`Exponent::new`], with the bits of [`pow`].
     #[inline]
-    pub fn of(self, base: f64) -> f64 {
+    pub fn of(self, base: f64, exponent: f64) -> f64 {
         match self.0 {
-            Kind::Whole(exponent) => squared_again(base, exponent),
-            Kind::Other(exponent) => power::pow(base, exponent),
+            Self::OTHER => power::pow(base, exponent),
+            exponent => squared_again(base, exponent.into()),
         }
     }
 }
@@ -183,7 +179,7 @@ mod tests {
         for exponent in [0.0, 1.0, 40.0, 64.0, 65.0, 0.025, -3.0, 2.5, f64::INFINITY] {
             let known = super::Exponent::new(exponent);
             for base in [0.0, 0.3, 1.0, 1.5, -2.0, 1e300, f64::NAN] {
-                let (a, b) = (known.of(base), super::pow(base, exponent));
+                let (a, b) = (known.of(base, exponent), super::pow(base, exponent));
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
             }
         }

@@ -381,7 +381,7 @@ fn raise(base: f64, exponent: f64, known: Exponent) -> f64 {
     if exponent == 0.5 {
         base.sqrt()
     } else {
-        known.of(base)
+        known.of(base, exponent)
     }
 }
 
