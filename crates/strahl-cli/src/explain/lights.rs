@@ -18,7 +18,9 @@ pub(super) fn write_light(w: &Writer<'_>, page: &mut Page, hit: &HitReport, ligh
     let n_dot_l = format!("l = {}, n·l = {}", d.point(l), d.number(term.n_dot_l));
     if term.shadow_ray.is_none() && term.visible.is_black() {
         let reason = match term.n_dot_l > 0.0 {
-            true => "it shows on no layer (no diffuse reflection, no highlight that a picture could show)",
+            true => {
+                "it shows on no layer (no diffuse reflection, no highlight that a picture could show)"
+            }
             false => "it is behind the surface",
         };
         page.line(INNER, &format!("{n_dot_l}: {reason}"));
