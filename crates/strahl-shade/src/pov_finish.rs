@@ -402,7 +402,9 @@ fn highlight(cos: f64, power: f64) -> f64 {
 /// No power is needed to tell: ln x < 2 (x - 1) / (x + 1) for 0 < x < 1.
 #[inline]
 fn highlight_vanishes(cos: f64, power: f64) -> bool {
-    cos <= 0.0 || power * (2.0 * (1.0 - cos)) > 173.0 * (1.0 + cos)
+    /// 249 ln 2, rounded up.
+    const DEPTH: f64 = 173.0;
+    cos.is_nan() || cos <= 0.0 || power * (2.0 * (1.0 - cos)) > DEPTH * (1.0 + cos)
 }
 
 /// The cosine between a unit vector and another vector; 0 if that is zero.

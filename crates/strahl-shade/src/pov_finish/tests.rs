@@ -356,4 +356,9 @@ fn highlights_that_vanish_are_small() {
         }
     }
     assert!(vanishing > 10_000, "{vanishing}");
+    assert!(
+        [0.0, -0.5, f64::NAN]
+            .iter()
+            .all(|cos| highlight_vanishes(*cos, 0.5))
+    );
 }
