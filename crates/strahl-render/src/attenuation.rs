@@ -71,4 +71,13 @@ impl RenderScene {
     pub(crate) fn faded(&self, inside: MaterialId, length: f64) -> Color {
         self.materials[inside.0 as usize].attenuation(length)
     }
+
+    /// The same for the light of a light source.
+    pub(crate) fn faded_shadow(&self, inside: MaterialId, length: f64) -> Color {
+        let interior = &self.materials[inside.0 as usize].interior;
+        match interior.as_ref().is_none_or(|i| i.fades_shadows()) {
+            true => self.faded(inside, length),
+            false => Color::WHITE,
+        }
+    }
 }

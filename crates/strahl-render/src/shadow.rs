@@ -194,7 +194,7 @@ impl Tracer<'_> {
                 Crossing::ByTurns => arena.is_inside(inside, own.body),
             };
             let absorbed = if leaves && own.body.is_object() {
-                self.scene.faded(id, stretch)
+                self.scene.faded_shadow(id, stretch)
             } else {
                 self.scene.absorbed(arena.top(inside), stretch)
             };

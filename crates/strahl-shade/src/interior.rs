@@ -11,7 +11,7 @@ pub struct Interior {
     pub ior: f64,
     /// The distance at which the light is attenuated to a half (or to 1/e, see [`Interior::attenuation`]); 0 is no attenuation.
     pub fade_distance: f64,
-    /// The exponent of the attenuation; 0 is no attenuation.
+    /// The exponent of the attenuation; with 0 it is the same on ways of any length.
     pub fade_power: f64,
     /// The colour of light after an infinite distance; black by default.
     pub fade_color: Color,
@@ -63,12 +63,18 @@ impl Interior {
         }
     }
 
+    /// Whether light of light sources is attenuated on its way through the object: not with a power of 0 (measured).
+    pub fn fades_shadows(&self) -> bool {
+        self.fade_power > 0.0
+    }
+
     /// The attenuation of light on a path of this length inside.
     ///
     /// With `s = length / fade_distance`: `c + (1 - c) / (1 + s^fade_power)` below a power of 1000, and
-    /// `exp(-(1 - c) s)`, the law of Beer and Lambert, from there on.
+    /// `exp(-(1 - c) s)`, the law of Beer and Lambert, from there on. So a power of 0 leaves `(1 + c) / 2` on ways of any length, as in
+    /// POV-Ray (measured); without a distance there is no attenuation.
     pub fn attenuation(&self, length: f64) -> Color {
-        if !(self.fade_power > 0.0) || !(self.fade_distance > 0.0) {
+        if !(self.fade_power >= 0.0) || !(self.fade_distance > 0.0) {
             return Color::WHITE;
         }
         let s = length / self.fade_distance;
@@ -91,6 +97,8 @@ mod tests {
         for (fade_power, fade_color, expected) in [
             (2.0, Color::BLACK, [0.2, 0.2, 0.2]),
             (2.0, color, [0.36, 0.6, 0.84]),
+            (0.0, Color::BLACK, [0.5, 0.5, 0.5]),
+            (0.0, color, [0.6, 0.75, 0.9]),
             (1001.0, Color::BLACK, [0.13533, 0.13533, 0.13533]),
             (1001.0, color, [0.20189, 0.36788, 0.67031]),
         ] {
