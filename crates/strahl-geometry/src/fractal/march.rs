@@ -1,6 +1,6 @@
 //! A ray on its way through the cells that may have a surface of a set of orbits.
 
-use super::orbit_set::{BALL, Event, OrbitSet, Places, SURFACE};
+use super::orbit_set::{AHEAD, BALL, Event, OrbitSet, Places, SURFACE};
 use crate::implicit::{Content, Visitor};
 use std::ops::ControlFlow;
 use strahl_math::roots::find_crossing;
@@ -160,44 +160,75 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         {
             return self.look(to);
         }
-        self.go(to, places.values[0], self.step(places.reaches[0]))?;
-        #[expect(
-            clippy::needless_range_loop,
-            reason = "the iterators `zip` and `skip` took as long as the rest of the loop"
-        )]
-        for k in 1..4 {
-            let (s, step) = (ahead[k], self.step(places.reaches[k]));
-            // What is clear around both places has to touch.
-            let back = if step.1 { 0.0 } else { step.0 };
-            if !(s - back <= self.clear && s <= self.length) {
-                break;
-            }
-            self.go(s, places.values[k], step)?;
+        let (clear, count) = self.clear_until(&ahead, &places);
+        let (values, all) = (&places.values[..count], &ahead[..count]);
+        if values.iter().all(|value| (*value < 0.0) == self.inside) {
+            self.skip(all, values, &clear, &places.reaches);
+            return ControlFlow::Continue(());
+        }
+        for ((&s, &value), &reach) in all.iter().zip(values).zip(&places.reaches) {
+            self.go(s, value, self.step(reach))?;
         }
         ControlFlow::Continue(())
     }
 
-    /// A place and three more, as far from each other as they will be clear if steps go on to grow or shrink as the last one did.
-    fn ahead(&self, s: f64) -> [f64; 4] {
+    /// Up to where the line is clear around each of some places, and how many of them are reached: what is clear around neighbours has to touch.
+    #[inline(always)]
+    fn clear_until(&self, ahead: &[f64; AHEAD], places: &Places) -> ([f64; AHEAD], usize) {
+        let (mut clear, mut backs) = ([0.0; AHEAD], [0.0; AHEAD]);
+        for k in 0..AHEAD {
+            let (step, is_near) = self.step(places.reaches[k]);
+            clear[k] = ahead[k] + step;
+            backs[k] = ahead[k] - if is_near { 0.0 } else { step };
+        }
+        let mut count = 1;
+        while count < AHEAD && backs[count] <= clear[count - 1] && ahead[count] <= self.length {
+            count += 1;
+        }
+        (clear, count)
+    }
+
+    /// Goes to the last of some places on the same side.
+    #[inline(always)]
+    fn skip(
+        &mut self,
+        places: &[f64],
+        values: &[f64],
+        clear: &[f64; AHEAD],
+        reaches: &[f64; AHEAD],
+    ) {
+        let last = places.len() - 1;
+        let (step, is_near) = self.step(reaches[last]);
+        self.before = match last.checked_sub(1) {
+            Some(before) => clear[before] - places[before],
+            None => self.clear - self.s,
+        };
+        (self.s, self.value) = (places[last], values[last]);
+        (self.last, self.clear, self.is_near) = (step, clear[last], is_near);
+    }
+
+    /// A place and further ones, as far from each other as they will be clear if steps go on to grow or shrink as the last one did.
+    #[inline(always)]
+    fn ahead(&self, s: f64) -> [f64; AHEAD] {
         let (shortest, longest) = self.steps;
-        let trend = between(self.last / self.before, TREND);
-        let mut step = (self.clear - self.s) * trend;
-        let mut places = [s; 4];
-        for k in 1..4 {
-            if step < shortest {
-                step = shortest;
-            }
-            if step > longest {
-                step = longest;
-            }
-            let next = step * trend;
-            let overlap = match next > shortest {
-                true if next > longest => OVERLAP * longest,
-                true => OVERLAP * next,
-                false => 0.0,
-            };
-            places[k] = places[k - 1] + step + overlap;
-            step = next;
+        let t = between(self.last / self.before, TREND);
+        let (t2, t4) = (t * t, (t * t) * (t * t));
+        let mut powers = [t, t2, t2 * t, t4, t4 * t, t4 * t2, t4 * (t2 * t), t4 * t4];
+        for power in &mut powers {
+            *power *= self.clear - self.s;
+        }
+        let mut ways = [0.0; AHEAD - 1];
+        for k in 0..AHEAD - 1 {
+            let (step, next) = (powers[k], powers[k + 1]);
+            let step = if step < shortest { shortest } else { step };
+            let step = if step > longest { longest } else { step };
+            let overlap = if next > longest { longest } else { next };
+            let overlap = if next > shortest { overlap } else { 0.0 };
+            ways[k] = step + OVERLAP * overlap;
+        }
+        let mut places = [s; AHEAD];
+        for k in 1..AHEAD {
+            places[k] = places[k - 1] + ways[k - 1];
         }
         places
     }

@@ -44,11 +44,15 @@ pub(super) struct Place {
     pub(super) reach: f64,
 }
 
-/// How four points of a line lie to the surface, as [`Place`]s.
+/// How many points of a line are looked at together: two vectors. The steps of an orbit wait for each other, so that two vectors take hardly
+/// longer than one.
+pub(super) const AHEAD: usize = 8;
+
+/// How several points of a line lie to the surface, as [`Place`]s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Places {
-    pub(super) values: [f64; 4],
-    pub(super) reaches: [f64; 4],
+    pub(super) values: [f64; AHEAD],
+    pub(super) reaches: [f64; AHEAD],
 }
 
 /// What is the same for all sets: the ball that they are searched in, and what is known of it.
@@ -90,10 +94,10 @@ pub(super) trait OrbitSet: Sized {
     fn value(&self, p: DVec3) -> f64;
     /// How a point lies to the surface.
     fn place(&self, p: DVec3) -> Place;
-    /// Stores how four points of a line lie to the surface, those at `origin + direction s`, if that takes little more time than one;
+    /// Stores how points of a line lie to the surface, those at `origin + direction s`, if that takes little more time than one;
     /// else does nothing and returns `false`.
     // In place: a result of this size would be read before its stores have ended.
-    fn store_places(&self, _line: (DVec3, DVec3), _s: &[f64; 4], _out: &mut Places) -> bool {
+    fn store_places(&self, _line: (DVec3, DVec3), _s: &[f64; AHEAD], _out: &mut Places) -> bool {
         false
     }
     /// Whether the points up to this distance from a point are all inside of the set or all outside.

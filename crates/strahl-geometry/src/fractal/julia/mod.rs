@@ -7,7 +7,7 @@ mod real;
 #[cfg(test)]
 mod tests;
 
-use super::orbit_set::{BALL, BallSearch, OrbitSet, Place, Places};
+use super::orbit_set::{AHEAD, BALL, BallSearch, OrbitSet, Place, Places};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
@@ -16,8 +16,9 @@ use orbit::{Four, Rule, Slice, norm2};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// The levels of the octree. Estimates of the distance are good, so that smaller cells take longer than they save.
-const LEVELS: u32 = 4;
+/// The levels of the octree. Estimates of the distance are good, and eight places are looked at together, so that smaller cells take longer
+/// than they save.
+const LEVELS: u32 = 2;
 
 /// A function of quaternions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,7 +168,7 @@ impl OrbitSet for Julia {
     fn store_places(
         &self,
         (origin, direction): (DVec3, DVec3),
-        s: &[f64; 4],
+        s: &[f64; AHEAD],
         out: &mut Places,
     ) -> bool {
         let line = [origin.to_array(), direction.to_array()];

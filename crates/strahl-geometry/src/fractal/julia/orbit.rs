@@ -2,8 +2,8 @@
 
 use super::complex::{Complex, HypercomplexFunction};
 use super::power::{Degree, Number, Powers};
-use super::real::{Lanes, Real};
-use super::{JuliaAlgebra, Place, Places, QuaternionFunction};
+use super::real::{Lanes, Pair, Real};
+use super::{AHEAD, JuliaAlgebra, Place, Places, QuaternionFunction};
 use std::f64::consts::SQRT_2;
 use strahl_math::{DVec3, det};
 use strahl_simd::{Isa, Simd, dispatch};
@@ -156,20 +156,20 @@ impl Rule {
         place_of(value, reach)
     }
 
-    /// Stores how four points of a line, given by its origin and its direction, lie to the surface; computed side by side, with the same
+    /// Stores how points of a line, given by its origin and its direction, lie to the surface; computed side by side, with the same
     /// bits as one by one; only for squares and cubes, else it does nothing and returns `false`.
     pub(super) fn store_places(
         &self,
         slice: &Slice,
         [origin, direction]: [[f64; 3]; 2],
-        s: &[f64; 4],
+        s: &[f64; AHEAD],
         out: &mut Places,
     ) -> bool {
         match self.algebra {
             JuliaAlgebra::Quaternion(f) => {
                 let powers = self.quaternion_powers(f);
                 dispatch!(Simd::best(), isa => {
-                    let s = Lanes::load(isa, s);
+                    let s = Pair::load(isa, s);
                     let start = slice.number(points_at(origin, direction, s));
                     let [a, b, c, d] = self.parameter;
                     let powers = powers.of([s.like(a), s.like(b), s.like(c), s.like(d)]);
@@ -181,7 +181,7 @@ impl Rule {
                     return false;
                 };
                 dispatch!(Simd::best(), isa => {
-                    let s = Lanes::load(isa, s);
+                    let s = Pair::load(isa, s);
                     let start = slice.number(points_at(origin, direction, s));
                     let [a, b, c, d] = self.parameter;
                     let powers = powers.of(split([s.like(a), s.like(b), s.like(c), s.like(d)]));
@@ -192,9 +192,13 @@ impl Rule {
         true
     }
 
-    /// Stores what [`place_of`] makes of four [estimates](Self::estimated).
+    /// Stores what [`place_of`] makes of [estimates](Self::estimated).
     #[inline(always)]
-    fn store_estimated<I: Isa>(&self, estimate: (Lanes<I>, Lanes<I>), out: &mut Places) {
+    fn store_estimated<I: Isa>(
+        &self,
+        estimate: (Pair<Lanes<I>>, Pair<Lanes<I>>),
+        out: &mut Places,
+    ) {
         let (value, reach) = self.estimated(estimate);
         // What is not a number is not at most anything; reaches are never negative.
         let infinite = value.like(f64::INFINITY);
@@ -509,7 +513,7 @@ mod tests {
     }
 
     #[test]
-    fn four_places_are_those_of_single_points() {
+    fn places_together_are_those_of_single_points() {
         let algebras = [
             JuliaAlgebra::Quaternion(QuaternionFunction::Square),
             JuliaAlgebra::Quaternion(QuaternionFunction::Cube),
@@ -530,7 +534,7 @@ mod tests {
             for n in 0..500 {
                 // From the middle of the set, whose orbits are long, to far outside, where they end at once.
                 let line = [[0.3, -0.2, 0.1], [0.7, -0.2, 0.25]];
-                let s = [0, 37, 74, 111].map(|k| f64::from(n + k) * 0.005);
+                let s = [0, 37, 74, 111, 5, 60, 120, 30].map(|k| f64::from(n + k) * 0.005);
                 let mut places = Places::default();
                 assert!(rule.store_places(&slice, line, &s, &mut places));
                 let found = places.values.iter().zip(places.reaches);
@@ -548,7 +552,7 @@ mod tests {
             points: 8,
             exit: 4.0,
         };
-        assert!(!rule.store_places(&slice, [[0.1; 3]; 2], &[0.1; 4], &mut Places::default()));
+        assert!(!rule.store_places(&slice, [[0.1; 3]; 2], &[0.1; AHEAD], &mut Places::default()));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Real numbers one by one, or four side by side: the same operations, so the same bits.
+//! Real numbers one by one, or four or eight side by side: the same operations, so the same bits.
 
 use std::ops::{Add, Mul, Sub};
 use strahl_simd::Isa;
@@ -131,5 +131,80 @@ impl<I: Isa> Real for Lanes<I> {
     #[inline(always)]
     fn any_le(self, limit: Self) -> bool {
         self.isa.le(self.vector, limit.vector) != 0
+    }
+}
+
+/// Two numbers, or two vectors of them, that are computed side by side.
+#[derive(Clone, Copy)]
+pub(super) struct Pair<R>(R, R);
+
+impl<I: Isa> Pair<Lanes<I>> {
+    #[inline(always)]
+    pub(super) fn load(isa: I, &[a, b, c, d, e, f, g, h]: &[f64; 8]) -> Self {
+        Self(
+            Lanes::load(isa, &[a, b, c, d]),
+            Lanes::load(isa, &[e, f, g, h]),
+        )
+    }
+
+    #[inline(always)]
+    pub(super) fn numbers(self) -> [f64; 8] {
+        let ([a, b, c, d], [e, f, g, h]) = (self.0.numbers(), self.1.numbers());
+        [a, b, c, d, e, f, g, h]
+    }
+}
+
+impl<R: Real> Add for Pair<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1)
+    }
+}
+
+impl<R: Real> Sub for Pair<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0, self.1 - other.1)
+    }
+}
+
+impl<R: Real> Mul for Pair<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0, self.1 * other.1)
+    }
+}
+
+impl<R: Real> Real for Pair<R> {
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        Self(self.0.like(x), self.1.like(x))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        Self(self.0.over(other.0), self.1.over(other.1))
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(self.0.larger(other.0), self.1.larger(other.1))
+    }
+    #[inline(always)]
+    fn choose_le(self, limit: Self, yes: Self, no: Self) -> Self {
+        Self(
+            self.0.choose_le(limit.0, yes.0, no.0),
+            self.1.choose_le(limit.1, yes.1, no.1),
+        )
+    }
+    #[inline(always)]
+    fn any_le(self, limit: Self) -> bool {
+        // Without a branch in between.
+        self.0.any_le(limit.0) | self.1.any_le(limit.1)
     }
 }
