@@ -153,22 +153,28 @@ pub(crate) fn strahl_binary() -> Result<PathBuf> {
         .join("strahl"))
 }
 
-/// The path of a copy of the release binary, as `cargo install` makes one. A program as the linker has written it takes up to 5 % more processor
-/// time on small pictures, because the system keeps its file in smaller pieces.
-pub(crate) fn installed_strahl() -> Result<&'static Path> {
-    static COPY: OnceLock<PathBuf> = OnceLock::new();
-    if COPY.get().is_none() {
-        let program = strahl_binary()?;
-        let copy = program.with_file_name("strahl-installed");
-        // A new file: the old one would keep its pieces.
-        if copy.exists() {
-            std::fs::remove_file(&copy)?;
-        }
-        std::fs::copy(&program, &copy).context("cannot copy strahl")?;
-        // Another thread can only have made the same.
-        let _ = COPY.set(copy);
+/// The copy that [`install`] made.
+static INSTALLED: OnceLock<PathBuf> = OnceLock::new();
+
+/// Copies a build of the program, as `cargo install` does, for [`installed_strahl`]. A program as the linker has written it takes up to 5 % more
+/// processor time on small pictures, because the system keeps its file in smaller pieces.
+pub(crate) fn install(program: &Path) -> Result<()> {
+    let copy = program.with_file_name("strahl-installed");
+    // A new file: the old one would keep its pieces.
+    if copy.exists() {
+        std::fs::remove_file(&copy)?;
     }
-    COPY.get().map(PathBuf::as_path).context("no copy")
+    std::fs::copy(program, &copy).context("cannot copy strahl")?;
+    if INSTALLED.set(copy).is_err() {
+        bail!("strahl was copied before");
+    }
+    Ok(())
+}
+
+/// The path of the copy that [`install`] made.
+pub(crate) fn installed_strahl() -> Result<&'static Path> {
+    let copy = INSTALLED.get().context("strahl was not copied")?;
+    Ok(copy)
 }
 
 /// Renders a scene at 512x512 with one ray per pixel; returns the trace time in seconds and the number of rays.

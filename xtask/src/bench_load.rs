@@ -35,7 +35,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     let mut table = String::from(
         "| file | MB | read s | MB/s | build s | read / build |\n|---|---|---|---|---|---|\n",
     );
-    for path in scenes(&folder, &Landscape { side })? {
+    for path in scenes(&folder, &Landscape { side }, ["10", "7"])? {
         let megabytes = fs::metadata(&path)?.len() as f64 / 1e6;
         let times: Vec<(f64, f64)> = (0..runs)
             .map(|_| times(&binary, &path))
@@ -83,14 +83,23 @@ fn times(binary: &Path, scene: &Path) -> Result<(f64, f64)> {
     Ok((number("/time_s/load")?, number("/accelerator/build_s")?))
 }
 
-fn scenes(folder: &Path, landscape: &Landscape) -> Result<Vec<PathBuf>> {
+/// A landscape of 20,000 triangles in every format, two NFF scenes with some thousands of triangles and spheres; returns the paths.
+pub(crate) fn small_scenes(folder: &Path) -> Result<Vec<PathBuf>> {
+    scenes(folder, &Landscape { side: 100 }, ["6", "4"])
+}
+
+fn scenes(
+    folder: &Path,
+    landscape: &Landscape,
+    [tetra, flake]: [&'static str; 2],
+) -> Result<Vec<PathBuf>> {
     type Write<'a> = &'a dyn Fn(&mut BufWriter<File>) -> Result<()>;
     let generated = |what: &'static str, levels: &'static str| {
         move |out: &mut BufWriter<File>| {
             Ok(out.write_all(lab::generate(what, Some(levels))?.as_bytes())?)
         }
     };
-    let (tetra, flake) = (generated("tetra", "10"), generated("sphereflake", "7"));
+    let (tetra, flake) = (generated("tetra", tetra), generated("sphereflake", flake));
     let files: [(&str, Write<'_>); 6] = [
         ("landscape.ply", &|out| landscape.ply(out)),
         ("landscape-ascii.ply", &|out| landscape.ascii(out)),

@@ -23,6 +23,8 @@ mod parallel;
 mod peers;
 #[path = "../../crates/strahl-sdl/tests/common/plates.rs"]
 mod plates;
+mod profiled;
+mod record;
 
 use anyhow::{Result, bail};
 use std::path::Path;
@@ -39,9 +41,10 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   time to parse a million spheres made by loops, and an exported scene, against POV-Ray
   bench load [--runs N] [--side N]
                                   time to read files of 10 million triangles, and to build the accelerator
-  bench scenes [FOLDER] [--aa] [--errors] [--runs N] [--size 320x240] [--only PART] [--most SECONDS] [--out DIR]
-                                  processor time of POV-Ray and strahl on real scenes;
-                                  --aa with +A0.3, --errors against converged pictures
+  bench scenes [FOLDER] [--aa] [--errors] [--plain] [--runs N] [--size 320x240] [--only PART] [--most SECONDS] [--out DIR]
+                                  processor time of POV-Ray and strahl, built as scripts/install does, on real scenes;
+                                  --plain without the recorded profile, --aa with +A0.3, --errors against
+                                  converged pictures
   bench peers [--rounds N] [--side PIXELS] [--only PART,...] [--brief]
                                   rays per second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
@@ -60,7 +63,9 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   looks [--only PART] [--out DIR] [--cell 48x36] [--program STRAHL] [--library DIR] [--table FILE] [--means FILE]
                                   compares the looks of the include library; --library tries other includes
   nff2pov SCENE OUTPUT.pov        converts a scene for POV-Ray, such that both programs do the same work
-  nff2dat SCENE OUTPUT.dat        converts a scene for Tachyon, which does not refract";
+  nff2dat SCENE OUTPUT.dat        converts a scene for Tachyon, which does not refract
+  record [--out FILE]             renders scenes of ours with a build that counts, and writes the profile that
+                                  scripts/install compiles the program with";
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -87,6 +92,7 @@ fn main() -> Result<()> {
         ["plot-growth", table, folder] => lab::plot_growth(Path::new(table), Path::new(folder)),
         ["nff2pov", scene, output] => convert::to_pov(Path::new(scene), Path::new(output)),
         ["nff2dat", scene, output] => convert::to_dat(Path::new(scene), Path::new(output)),
+        ["record", rest @ ..] => record::run(rest),
         _ => bail!("{USAGE}"),
     }
 }

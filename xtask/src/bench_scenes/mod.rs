@@ -35,6 +35,8 @@ pub(crate) struct Options {
     antialiased: bool,
     /// Whether to render converged pictures as well.
     errors: bool,
+    /// Whether to measure a build without the recorded profile.
+    plain: bool,
     /// Scenes that take POV-Ray more seconds than this are left out.
     most: f64,
 }
@@ -50,6 +52,7 @@ impl Options {
             only: None,
             antialiased: false,
             errors: false,
+            plain: false,
             most: 120.0,
         };
         let mut args = Arguments::new(args);
@@ -62,6 +65,7 @@ impl Options {
                 "--only" => options.only = Some(args.value()?.to_owned()),
                 "--out" => options.out = PathBuf::from(args.value()?),
                 "--aa" => options.antialiased = true,
+                "--plain" => options.plain = true,
                 "--errors" => (options.antialiased, options.errors) = (true, true),
                 other if other.starts_with('-') => bail!("unknown option {other}"),
                 folder => options.folder = PathBuf::from(folder),
@@ -94,7 +98,13 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     }
     scenes.truncate(options.limit);
     std::fs::create_dir_all(&options.out)?;
-    crate::bench::build_strahl()?;
+    let program = if options.plain {
+        crate::bench::build_strahl()?;
+        crate::bench::strahl_binary()?
+    } else {
+        crate::profiled::build_with_profile()?
+    };
+    crate::bench::install(&program)?;
     let mut rows = vec![];
     let mut left_out = 0;
     for (number, scene) in scenes.iter().enumerate() {
