@@ -153,10 +153,10 @@ pub(crate) fn strahl_binary() -> Result<PathBuf> {
         .join("strahl"))
 }
 
-/// The copy that [`install`] made.
+/// The program that is measured on scenes.
 static INSTALLED: OnceLock<PathBuf> = OnceLock::new();
 
-/// Copies a build of the program, as `cargo install` does, for [`installed_strahl`]. A program as the linker has written it takes up to 5 % more
+/// Copies a build of the program, as `cargo install` does, and [uses](use_installed) the copy. A program as the linker has written it takes up to 5 % more
 /// processor time on small pictures, because the system keeps its file in smaller pieces.
 pub(crate) fn install(program: &Path) -> Result<()> {
     let copy = program.with_file_name("strahl-installed");
@@ -165,16 +165,21 @@ pub(crate) fn install(program: &Path) -> Result<()> {
         std::fs::remove_file(&copy)?;
     }
     std::fs::copy(program, &copy).context("cannot copy strahl")?;
-    if INSTALLED.set(copy).is_err() {
-        bail!("strahl was copied before");
+    use_installed(copy)
+}
+
+/// Makes [`installed_strahl`] return an installed program. Called at most once, as is [`install`].
+pub(crate) fn use_installed(program: PathBuf) -> Result<()> {
+    if INSTALLED.set(program).is_err() {
+        bail!("an installed program was chosen before");
     }
     Ok(())
 }
 
-/// The path of the copy that [`install`] made.
+/// The path of the program that is measured on scenes.
 pub(crate) fn installed_strahl() -> Result<&'static Path> {
-    let copy = INSTALLED.get().context("strahl was not copied")?;
-    Ok(copy)
+    let program = INSTALLED.get().context("no installed program was chosen")?;
+    Ok(program)
 }
 
 /// Renders a scene at 512x512 with one ray per pixel; returns the trace time in seconds and the number of rays.

@@ -41,9 +41,10 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   time to parse a million spheres made by loops, and an exported scene, against POV-Ray
   bench load [--runs N] [--side N]
                                   time to read files of 10 million triangles, and to build the accelerator
-  bench scenes [FOLDER] [--aa] [--errors] [--plain] [--runs N] [--size 320x240] [--only PART] [--most SECONDS] [--out DIR]
+  bench scenes [FOLDER] [--aa] [--errors] [--plain | --program STRAHL] [--runs N] [--size 320x240] [--only PART] [--most SECONDS] [--out DIR]
                                   processor time of POV-Ray and strahl, built as scripts/install does, on real scenes;
-                                  --plain without the recorded profile, --aa with +A0.3, --errors against
+                                  --plain without the recorded profile, --program an
+                                  installed one, --aa with +A0.3, --errors against
                                   converged pictures
   bench peers [--rounds N] [--side PIXELS] [--only PART,...] [--brief]
                                   rays per second on meshes and spheres against Embree, one thread

@@ -6,7 +6,7 @@ mod report;
 
 use crate::arguments::Arguments;
 use crate::compare_pov::{find_scenes, picture, size};
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use measure::{Program, Timed};
 use std::path::{Path, PathBuf};
 
@@ -37,6 +37,8 @@ pub(crate) struct Options {
     errors: bool,
     /// Whether to measure a build without the recorded profile.
     plain: bool,
+    /// An installed program to measure, instead of one that is built.
+    program: Option<PathBuf>,
     /// Scenes that take POV-Ray more seconds than this are left out.
     most: f64,
 }
@@ -53,6 +55,7 @@ impl Options {
             antialiased: false,
             errors: false,
             plain: false,
+            program: None,
             most: 120.0,
         };
         let mut args = Arguments::new(args);
@@ -66,6 +69,7 @@ impl Options {
                 "--out" => options.out = PathBuf::from(args.value()?),
                 "--aa" => options.antialiased = true,
                 "--plain" => options.plain = true,
+                "--program" => options.program = Some(PathBuf::from(args.value()?)),
                 "--errors" => (options.antialiased, options.errors) = (true, true),
                 other if other.starts_with('-') => bail!("unknown option {other}"),
                 folder => options.folder = PathBuf::from(folder),
@@ -98,13 +102,19 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     }
     scenes.truncate(options.limit);
     std::fs::create_dir_all(&options.out)?;
-    let program = if options.plain {
-        crate::bench::build_strahl()?;
-        crate::bench::strahl_binary()?
-    } else {
-        crate::profiled::build_with_profile()?
-    };
-    crate::bench::install(&program)?;
+    match &options.program {
+        Some(program) => {
+            let program = program
+                .canonicalize()
+                .with_context(|| format!("cannot find the program {}", program.display()))?;
+            crate::bench::use_installed(program)?;
+        }
+        None if options.plain => {
+            crate::bench::build_strahl()?;
+            crate::bench::install(&crate::bench::strahl_binary()?)?;
+        }
+        None => crate::bench::install(&crate::profiled::build_with_profile()?)?,
+    }
     let mut rows = vec![];
     let mut left_out = 0;
     for (number, scene) in scenes.iter().enumerate() {

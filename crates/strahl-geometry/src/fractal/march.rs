@@ -14,7 +14,7 @@ const LONGEST: f64 = 1.0 / 16.0;
 const TREND: (f64, f64) = (0.25, 2.0);
 
 /// The part of the next step that is expected to reach back; what is left is for expectations that are too high.
-const OVERLAP: f64 = 0.75;
+const OVERLAP: f64 = 0.25;
 
 /// The march along a ray: the point at `s` is `origin + s direction`.
 pub(super) struct March<'a, S, V> {
