@@ -11,7 +11,9 @@ const PROFILE: &str = "xtask/profile/linux-x86_64.profdata";
 /// The path of the recorded profile. It suits one system, because the names of functions depend on the compiler and on what it compiles for.
 pub(crate) fn profile() -> Result<PathBuf> {
     if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-        bail!("there is a profile for Linux on x86-64 only");
+        bail!(
+            "profiles are recorded and used on Linux with x86-64 only; `bench scenes --plain` measures a build without one"
+        );
     }
     Ok(std::path::absolute(PROFILE)?)
 }

@@ -172,7 +172,8 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         ControlFlow::Continue(())
     }
 
-    /// Up to where the line is clear around each of some places, and how many of them are reached: what is clear around neighbours has to touch.
+    /// How far the line is clear from each place on, and how many of the places the march may go to: the clear parts around neighbours
+    /// have to touch.
     #[inline(always)]
     fn clear_until(&self, ahead: &[f64; AHEAD], places: &Places) -> ([f64; AHEAD], usize) {
         let (mut clear, mut backs) = ([0.0; AHEAD], [0.0; AHEAD]);
@@ -188,7 +189,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         (clear, count)
     }
 
-    /// Goes to the last of some places on the same side.
+    /// Goes to the last of these places, all of which are on the ray's side of the surface.
     #[inline(always)]
     fn skip(
         &mut self,
@@ -211,15 +212,17 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     #[inline(always)]
     fn ahead(&self, s: f64) -> [f64; AHEAD] {
         let (shortest, longest) = self.steps;
-        let t = between(self.last / self.before, TREND);
-        let (t2, t4) = (t * t, (t * t) * (t * t));
-        let mut powers = [t, t2, t2 * t, t4, t4 * t, t4 * t2, t4 * (t2 * t), t4 * t4];
-        for power in &mut powers {
-            *power *= self.clear - self.s;
+        let trend = between(self.last / self.before, TREND);
+        let (t2, t4) = (trend * trend, (trend * trend) * (trend * trend));
+        let t3 = t2 * trend;
+        // The steps without limits: the last one times the powers of the trend. So each is known without the one before.
+        let mut free = [trend, t2, t3, t4, t4 * trend, t4 * t2, t4 * t3, t4 * t4];
+        for step in &mut free {
+            *step *= self.clear - self.s;
         }
         let mut ways = [0.0; AHEAD - 1];
         for k in 0..AHEAD - 1 {
-            let (step, next) = (powers[k], powers[k + 1]);
+            let (step, next) = (free[k], free[k + 1]);
             let step = if step < shortest { shortest } else { step };
             let step = if step > longest { longest } else { step };
             let overlap = if next > longest { longest } else { next };
