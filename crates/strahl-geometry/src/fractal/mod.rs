@@ -4,6 +4,7 @@ mod julia;
 mod mandelbulb;
 mod march;
 mod menger;
+mod orbit_search;
 mod orbit_set;
 mod terrain;
 

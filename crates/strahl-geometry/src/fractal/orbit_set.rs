@@ -1,14 +1,9 @@
-//! Sets of points whose orbits stay near the origin, as solids: how rays find their surface, whatever is iterated.
+//! Sets of points whose orbits stay near the origin: what their search needs to know, whatever is iterated.
 
-use super::march::March;
-use crate::implicit::{Octree, Passage};
-use crate::{
-    Container, Crossing, Crossings, PrimHit, Scratch, Side, Sphere, SurfaceId, SurfacePoint,
-};
-use std::ops::ControlFlow;
+use crate::implicit::Octree;
+use crate::{Container, Sphere, SurfaceId};
 use std::sync::Arc;
-use strahl_math::error::{ROUNDOFF, gamma};
-use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_math::{Aabb, DVec3};
 
 /// The surface of the set.
 pub(super) const SURFACE: SurfaceId = SurfaceId {
@@ -58,11 +53,11 @@ pub(super) struct Places {
 /// What is the same for all sets: the ball that they are searched in, and what is known of it.
 #[derive(Clone, Debug)]
 pub(super) struct BallSearch {
-    around: Container,
+    pub(super) around: Container,
     pub(super) radius: f64,
     /// The least step.
     pub(super) shortest: f64,
-    octree: Arc<Octree>,
+    pub(super) octree: Arc<Octree>,
 }
 
 impl BallSearch {
@@ -110,205 +105,4 @@ pub(super) trait OrbitSet: Sized {
     fn speed(&self, direction: DVec3) -> f64 {
         direction.length()
     }
-
-    /// Reports the events along a ray to the visitor until it stops. Those outside of the range may be left out.
-    ///
-    /// The line is searched from the ray's origin on, and what is behind the origin by itself, if it is asked for: so what is found ahead
-    /// does not depend on the range.
-    fn walk(
-        &self,
-        ray: &Ray,
-        (range, from): (Interval, Option<SurfaceId>),
-        mut visit: impl FnMut(Event) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        let Some(passage) = self.search().around.passage(ray, None) else {
-            return ControlFlow::Continue(());
-        };
-        let (enter, exit) = (passage.start(), passage.exit.hit.t);
-        // A little before the origin, for ranges that begin there, unless the ray starts on the surface.
-        let origin = match from {
-            Some(_) => 0.0,
-            None => -self.search().shortest / ray.direction.abs().max_element(),
-        };
-        let start = if enter < origin { origin } else { enter };
-        let is_behind = enter < start && range.min < start && from.is_none();
-        let behind = if is_behind && start < exit {
-            Some(start)
-        } else if is_behind {
-            Some(exit)
-        } else {
-            None
-        };
-        let mut side = None;
-        if let Some(end) = behind {
-            let part = (enter, end);
-            side = self.search_part(ray, part, (range, None), &passage, None, &mut visit)?;
-        }
-        self.search_part(
-            ray,
-            (start, exit),
-            (range, from),
-            &passage,
-            side,
-            &mut visit,
-        )?;
-        ControlFlow::Continue(())
-    }
-
-    /// Reports the events in a part of a ray, and the side at its end if it goes on there. `side` is the side at its start if the part
-    /// before has been searched.
-    fn search_part(
-        &self,
-        ray: &Ray,
-        (start, end): (f64, f64),
-        (range, from): (Interval, Option<SurfaceId>),
-        passage: &Passage,
-        side: Option<bool>,
-        visit: &mut impl FnMut(Event) -> ControlFlow<()>,
-    ) -> ControlFlow<(), Option<bool>> {
-        if !(start < end && end.is_finite() && start.is_finite()) {
-            return ControlFlow::Continue(side);
-        }
-        let (length, origin) = (end - start, ray.at(start));
-        // An empty range has a side at its start, too.
-        let needed = range.max.max(range.min) - start;
-        let line = (origin, ray.direction);
-        let mut march = March::new(self, line, (start, length, needed), visit);
-        if from.is_some() && march.value.abs() < self.noise(origin) {
-            // Where rounding hides the side, the direction of the ray decides.
-            let leaves = self.gradient(origin).dot(ray.direction) >= 0.0;
-            march.set_side(!leaves);
-        }
-        let inside = march.inside;
-        match side {
-            // Where rounding hides the side, it is that of the part before.
-            Some(side) if side != inside => march.set_side(side),
-            Some(_) => {}
-            None if started_within(passage, start) => (march.visit)(Event::Start { inside })?,
-            None if inside => (march.visit)(Event::Crossing {
-                t: start,
-                surface: BALL,
-                enters: true,
-            })?,
-            None => {}
-        }
-        let cells = &self.search().octree;
-        cells.walk(Interval::new(0.0, length), &mut march)?;
-        if end < passage.exit.hit.t {
-            march.finish()?;
-            return ControlFlow::Continue(Some(march.inside));
-        }
-        march.leave()?;
-        ControlFlow::Continue(None)
-    }
-
-    fn t_error(&self, ray: &Ray, t: f64) -> f64 {
-        let p = ray.at(t);
-        let gradient = self.gradient(p);
-        let reach = (ray.origin.abs() + (ray.direction * t).abs()) * gamma(4);
-        let error = (self.noise(p) + gradient.abs().dot(reach)) / gradient.dot(ray.direction).abs();
-        let longest = self.search().shortest / ray.direction.abs().max_element();
-        gamma(4) * t.abs() + if error < longest { error } else { longest }
-    }
-
-    /// The first hit in a range.
-    fn first(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        _scratch: &mut Scratch,
-    ) -> Option<PrimHit> {
-        let mut closest = None;
-        // The result only matters while visiting.
-        let _ = self.walk(ray, (range, from), |event| match event {
-            Event::Crossing { t, surface, .. } if surface == SURFACE && range.accepts(t) => {
-                closest = Some(PrimHit::simple(t, SURFACE.facet));
-                ControlFlow::Break(())
-            }
-            Event::Crossing { t, .. } if t > range.max => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        });
-        closest
-    }
-
-    /// The surface at a hit, moved onto it.
-    fn settled(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        if hit.surface == BALL {
-            return self
-                .search()
-                .around
-                .surface_at(ray, &PrimHit::simple(hit.t, 0));
-        }
-        let mut p = ray.at(hit.t);
-        let mut value = self.value(p);
-        let mut gradient = self.gradient(p);
-        for _ in 0..2 {
-            let step = gradient * (value / gradient.dot(gradient));
-            if !(step.length() < self.search().shortest) {
-                break;
-            }
-            let next = self.value(p - step);
-            if !(next.abs() < value.abs()) {
-                break;
-            }
-            p -= step;
-            value = next;
-            gradient = self.gradient(p);
-        }
-        let off = (self.noise(p) + value.abs()) / gradient.length();
-        let off = if off < self.search().shortest {
-            off
-        } else {
-            self.search().shortest
-        };
-        let normal = gradient
-            .try_normalize()
-            .or_else(|| (-ray.direction).try_normalize())
-            .unwrap_or(DVec3::Y);
-        let error = DVec3::splat(off + f64::MIN_POSITIVE) + p.abs() * (4.0 * ROUNDOFF);
-        SurfacePoint::bare(p, error, normal)
-    }
-
-    /// All crossings, as [`Solid::crossings`](crate::Solid::crossings) lists them.
-    fn list(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        _scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        let start = if from.is_some() && range.min < 0.0 {
-            0.0
-        } else {
-            range.min
-        };
-        let needed = Interval::new(start, range.max);
-        let _ = self.walk(ray, (needed, from), |event| {
-            match event {
-                Event::Start { inside } => out.inside_at_start = inside,
-                Event::Crossing { t, enters, .. } if t <= start => out.inside_at_start = enters,
-                Event::Crossing { t, surface, enters } if t <= range.max => {
-                    let side = if enters { Side::Enter } else { Side::Exit };
-                    let hit = PrimHit::simple(t, surface.facet);
-                    let mut crossing = Crossing::new(hit, self.t_error(ray, t), side);
-                    crossing.visible = surface == SURFACE;
-                    out.list.push(crossing);
-                }
-                Event::Crossing { .. } => return ControlFlow::Break(()),
-            }
-            ControlFlow::Continue(())
-        });
-    }
-
-    /// Whether a point is in the set.
-    fn holds(&self, point: DVec3) -> bool {
-        self.search().around.contains(point) && self.value(point) <= 0.0
-    }
-}
-
-/// Whether the ray enters the ball before this.
-fn started_within(passage: &Passage, start: f64) -> bool {
-    passage.enter.is_none_or(|enter| enter.hit.t < start)
 }

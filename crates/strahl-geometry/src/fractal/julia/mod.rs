@@ -7,6 +7,7 @@ mod real;
 #[cfg(test)]
 mod tests;
 
+use super::orbit_search;
 use super::orbit_set::{AHEAD, BALL, BallSearch, OrbitSet, Place, Places};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
@@ -219,13 +220,13 @@ impl Primitive for Julia {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        self.first(ray, range, from, scratch)
+        orbit_search::closest_hit(self, ray, range, from)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let point = self.settled(ray, hit);
+        let point = orbit_search::surface_at(self, ray, hit);
         if hit.surface == BALL {
             return point;
         }
@@ -251,13 +252,13 @@ impl Solid for Julia {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
-        self.list(ray, range, from, scratch, out);
+        orbit_search::crossings(self, ray, range, from, out);
     }
 
     fn contains(&self, point: DVec3) -> bool {
-        self.holds(point)
+        orbit_search::contains(self, point)
     }
 }

@@ -4,6 +4,7 @@ mod power;
 #[cfg(test)]
 mod tests;
 
+use super::orbit_search;
 use super::orbit_set::{BallSearch, OrbitSet, Place};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
@@ -263,13 +264,13 @@ impl Primitive for Mandelbulb {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        self.first(ray, range, from, scratch)
+        orbit_search::closest_hit(self, ray, range, from)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.settled(ray, hit)
+        orbit_search::surface_at(self, ray, hit)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {
@@ -283,13 +284,13 @@ impl Solid for Mandelbulb {
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
-        scratch: &mut Scratch,
+        _scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
-        self.list(ray, range, from, scratch, out);
+        orbit_search::crossings(self, ray, range, from, out);
     }
 
     fn contains(&self, point: DVec3) -> bool {
-        self.holds(point)
+        orbit_search::contains(self, point)
     }
 }
