@@ -1,6 +1,5 @@
 //! The rays of one position in the picture, where there may be many.
 
-use super::lens::scramble;
 use crate::sampling::Sample;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
@@ -81,4 +80,18 @@ impl RayBundle {
             }
         }
     }
+}
+
+/// Four numbers in `0..1` that differ for every position in the picture (the mixer of SplitMix64).
+fn scramble((x, y): (f64, f64)) -> [f64; 4] {
+    let mix = |mut z: u64| {
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    };
+    let first = mix(x.to_bits().wrapping_add(0x9e37_79b9_7f4a_7c15));
+    let bits = mix(first ^ y.to_bits().rotate_left(32));
+    let unit = |bits: u64| (bits >> 40) as f64 / (1u64 << 24) as f64;
+    let more = mix(bits);
+    [unit(bits), unit(bits << 24), unit(more), unit(more << 24)]
 }

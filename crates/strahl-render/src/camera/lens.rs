@@ -179,20 +179,6 @@ fn quantile(confidence: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
 
-/// Four numbers in `0..1` that differ for every position in the picture (the mixer of SplitMix64).
-pub(super) fn scramble((x, y): (f64, f64)) -> [f64; 4] {
-    let mix = |mut z: u64| {
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    };
-    let first = mix(x.to_bits().wrapping_add(0x9e37_79b9_7f4a_7c15));
-    let bits = mix(first ^ y.to_bits().rotate_left(32));
-    let unit = |bits: u64| (bits >> 40) as f64 / (1u64 << 24) as f64;
-    let more = mix(bits);
-    [unit(bits), unit(bits << 24), unit(more), unit(more << 24)]
-}
-
 /// One over the root of x^5 = x + 1, and over its powers.
 const STEPS: [f64; 4] = [
     0.856_674_883_854_502_9,
