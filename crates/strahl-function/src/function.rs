@@ -1,12 +1,14 @@
 use crate::bounds::Bounds;
+use crate::compile::compile;
 use crate::cost::Cost;
 use crate::domain::{Domain, Dual, LANES, Lanes};
 use crate::error::FunctionError;
 use crate::field::ScalarField;
 use crate::graph::{Expr, Graph};
+use crate::limits;
 use crate::rate::Rate;
 use crate::run::{prepare, run};
-use crate::tape::{self, Tape, TapeNumber};
+use crate::tape::{Tape, TapeNumber};
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -15,16 +17,16 @@ use std::sync::Arc;
 /// Missing arguments count as NaN, surplus ones are ignored; no arguments make it panic.
 #[derive(Clone, Debug)]
 pub struct Function {
-    inner: Arc<Inner>,
+    formula: Arc<Formula>,
+    tape: Arc<Tape>,
 }
 
+/// What a function has been built as.
 #[derive(Debug)]
-struct Inner {
+struct Formula {
     graph: Graph,
     root: Expr,
-    tape: Tape,
     size: usize,
-    depth: u32,
 }
 
 /// Working memory of evaluations: one for each thread, used for any number of functions.
@@ -42,8 +44,8 @@ pub struct Workspace {
 /// the same bits. Functions that are written differently are not equal.
 impl PartialEq for Function {
     fn eq(&self, other: &Self) -> bool {
-        let (a, b) = (&*self.inner, &*other.inner);
-        self.place() == other.place() || a.root == b.root && a.graph.is_same(&b.graph)
+        let (a, b) = (&*self.formula, &*other.formula);
+        Arc::ptr_eq(&self.tape, &other.tape) || a.root == b.root && a.graph.is_same(&b.graph)
     }
 }
 
@@ -117,11 +119,11 @@ impl Workspace {
 }
 
 impl Function {
-    pub(crate) fn compile(mut graph: Graph, root: Expr) -> Result<Self, FunctionError> {
+    fn compile(mut graph: Graph, root: Expr) -> Result<Self, FunctionError> {
         let depth = graph.depth(root);
         let size = graph.reachable(root).len();
-        let mut tape = tape::compile(&graph, root)?;
-        tape.number = TapeNumber::next();
+        let mut tape = compile(&graph, root)?;
+        (tape.number, tape.depth) = (TapeNumber::next(), depth);
         let limit = graph.allowed();
         if tape.cost > limit || tape.cost == u64::MAX {
             let cost = tape.cost;
@@ -129,34 +131,29 @@ impl Function {
         }
         graph.seal();
         Ok(Self {
-            inner: Arc::new(Inner {
-                graph,
-                root,
-                tape,
-                size,
-                depth,
-            }),
+            formula: Arc::new(Formula { graph, root, size }),
+            tape: Arc::new(tape),
         })
     }
 
     /// The names of the parameters, in the order of the arguments.
     pub fn parameters(&self) -> &[String] {
-        self.inner.graph.parameters()
+        self.formula.graph.parameters()
     }
 
     /// How many different values the function computes or reads.
     pub fn size(&self) -> usize {
-        self.inner.size
+        self.formula.size
     }
 
     /// The function's number, if it doesn't depend on its arguments.
     pub fn constant(&self) -> Option<f64> {
-        self.inner.graph.known(self.inner.root)
+        self.formula.graph.known(self.formula.root)
     }
 
     /// The value at a point.
     pub fn value(&self, workspace: &mut Workspace, arguments: &[f64]) -> f64 {
-        let tape = self.tape();
+        let tape = &*self.tape;
         let stack = workspace.points.of(tape);
         fill(stack, tape, arguments, |x| x);
         let mut fuel = self.fuel();
@@ -167,17 +164,17 @@ impl Function {
 
     /// The cost of a call of [`value`](Self::value), without rounds of loops whose number is unknown beforehand.
     pub fn cost(&self) -> u64 {
-        self.tape().cost
+        self.tape.cost
     }
 
     /// How many operations building it took.
     pub fn work(&self) -> u64 {
-        self.inner.graph.work()
+        self.formula.graph.work()
     }
 
     /// The limit for the loops of an evaluation.
     fn fuel(&self) -> u64 {
-        self.inner.graph.allowed()
+        self.formula.graph.allowed()
     }
 
     /// The values at many points: `arguments` has a column for each parameter, `values` says how many points there are.
@@ -185,7 +182,7 @@ impl Function {
     /// Every value has the bits that [`value`](Self::value) gives for its point. A point that a column is too short for
     /// has NaN there.
     pub fn values(&self, workspace: &mut Workspace, arguments: &[&[f64]], values: &mut [f64]) {
-        let tape = self.tape();
+        let tape = &*self.tape;
         let stack = workspace.lanes.of(tape);
         for (chunk, out) in values.chunks_mut(LANES).enumerate() {
             for (input, register) in stack[..tape.inputs].iter_mut().enumerate() {
@@ -209,7 +206,7 @@ impl Function {
 
     /// An interval that contains the value at every point whose arguments are within bounds.
     pub fn bounds(&self, workspace: &mut Workspace, arguments: &[Bounds]) -> Bounds {
-        let tape = self.tape();
+        let tape = &*self.tape;
         let stack = workspace.bounds.of(tape);
         fill(stack, tape, arguments, Bounds::with_both_zeros);
         run(tape, stack, &mut self.fuel())
@@ -226,7 +223,7 @@ impl Function {
         arguments: &[Bounds],
         rates: &[f64],
     ) -> (Bounds, Bounds) {
-        let tape = self.tape();
+        let tape = &*self.tape;
         let stack = workspace.rates.of(tape);
         for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
             let argument = arguments.get(i).copied().unwrap_or(Bounds::NAN);
@@ -246,19 +243,19 @@ impl Function {
 
     /// Whether [`rate`](Self::rate) can be known: those of all fields that are called can be.
     pub fn has_rates(&self) -> bool {
-        self.tape().has_rates()
+        self.tape.has_rates()
     }
 
     /// Whether [`bounds`](Self::bounds) converge to the values as boxes become small: all fields within have bounds.
     pub fn is_bounded(&self) -> bool {
-        self.tape().is_bounded()
+        self.tape.is_bounded()
     }
 
     /// The value at a point, with the bits of [`value`](Self::value), and its derivatives by the first three parameters.
     ///
     /// At steps and corners (`floor`, `abs`, `min`, ...) the derivative of one side is given.
     pub fn gradient(&self, workspace: &mut Workspace, arguments: &[f64]) -> (f64, [f64; 3]) {
-        let tape = self.tape();
+        let tape = &*self.tape;
         let stack = workspace.duals.of(tape);
         for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
             *register = Dual::number(arguments.get(i).copied().unwrap_or(f64::NAN));
@@ -269,26 +266,37 @@ impl Function {
         let result = run(tape, stack, &mut self.fuel());
         (result.value, result.partials)
     }
+}
 
-    /// The address of the compiled function, the same for all clones.
-    pub(crate) fn place(&self) -> usize {
-        Arc::as_ptr(&self.inner) as usize
+/// Functions from graphs, and in graphs.
+impl Graph {
+    /// Compiles the function whose value is `root`.
+    pub fn finish(self, root: Expr) -> Result<Function, FunctionError> {
+        self.check(root)?;
+        Function::compile(self, root)
     }
 
-    pub(crate) fn graph(&self) -> &Graph {
-        &self.inner.graph
-    }
-
-    pub(crate) fn root(&self) -> Expr {
-        self.inner.root
-    }
-
-    pub(crate) fn tape(&self) -> &Tape {
-        &self.inner.tape
-    }
-
-    pub(crate) fn depth(&self) -> u32 {
-        self.inner.depth
+    /// A call of another function: small ones become part of this graph, large ones are called.
+    pub fn call(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
+        if self.failure().is_some() {
+            // It has failed already; continuing to copy might never end.
+            return Expr(0);
+        }
+        let expected = function.parameters().len();
+        if arguments.len() != expected {
+            let found = arguments.len();
+            return self.fail(FunctionError::ArgumentCount {
+                function: "the function".to_owned(),
+                expected,
+                found,
+            });
+        }
+        let Formula { graph, root, size } = &*function.formula;
+        if *size <= limits::INLINE {
+            self.inline(graph, *root, arguments)
+        } else {
+            self.call_tape(&function.tape, arguments)
+        }
     }
 }
 
@@ -301,14 +309,14 @@ impl ScalarField for Function {
     /// that call it a thousand times are not.
     fn cost(&self) -> Cost {
         const PART: u64 = 16;
-        let open = if self.tape().is_open {
+        let open = if self.tape.is_open {
             self.fuel() / PART
         } else {
             0
         };
         Cost {
-            operations: self.tape().cost.saturating_add(open),
-            depth: self.depth(),
+            operations: self.tape.cost.saturating_add(open),
+            depth: self.tape.depth,
         }
         .around()
     }

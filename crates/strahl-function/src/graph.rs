@@ -3,9 +3,9 @@ mod loops;
 
 use crate::error::FunctionError;
 use crate::field::ScalarField;
-use crate::function::Function;
 use crate::limits;
 use crate::op::{BinaryOp, UnaryOp};
+use crate::tape::Tape;
 use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
@@ -72,8 +72,9 @@ pub struct Graph {
     fields: Vec<Arc<dyn ScalarField>>,
     /// The numbers of the fields, by where they are.
     field_index: HashMap<usize, u32>,
-    functions: Vec<Function>,
-    function_index: HashMap<usize, u32>,
+    /// The tapes of the functions that are called.
+    callees: Vec<Arc<Tape>>,
+    callee_index: HashMap<usize, u32>,
     /// The loop variables a node depends on that no loop within it binds, ascending; absent for most.
     free: NodeMap<Box<[u32]>>,
     /// How deep loops and calls are nested in each node.
@@ -135,15 +136,15 @@ impl Graph {
     /// Whether another graph has the same nodes in the same order, so that all evaluations do the same.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let mut fields = self.fields.iter().zip(&other.fields);
-        let mut functions = self.functions.iter().zip(&other.functions);
+        let mut callees = self.callees.iter().zip(&other.callees);
         self.nodes == other.nodes
             && self.lists == other.lists
             && self.parameters == other.parameters
             && self.allowed() == other.allowed()
-            && self.functions.len() == other.functions.len()
+            && self.callees.len() == other.callees.len()
             && self.fields.len() == other.fields.len()
             && fields.all(|(a, b)| Arc::ptr_eq(a, b))
-            && functions.all(|(a, b)| a.place() == b.place())
+            && callees.all(|(a, b)| Arc::ptr_eq(a, b))
     }
 
     /// The number of operations that building took so far, including those for nodes that already existed.
@@ -156,21 +157,19 @@ impl Graph {
         self.index = HashMap::new();
         self.list_index = HashMap::new();
         self.field_index = HashMap::new();
-        self.function_index = HashMap::new();
+        self.callee_index = HashMap::new();
         self.free = NodeMap::default();
         self.depth = Vec::new();
         self.nodes.shrink_to_fit();
     }
 
-    /// Compiles the function whose value is `root`.
-    pub fn finish(self, root: Expr) -> Result<Function, FunctionError> {
-        if let Some(error) = self.failure {
-            return Err(error);
+    /// The first error, or that the expression belongs to another graph.
+    pub(crate) fn check(&self, root: Expr) -> Result<(), FunctionError> {
+        match &self.failure {
+            Some(error) => Err(error.clone()),
+            None if root.0 as usize >= self.nodes.len() => Err(FunctionError::ForeignExpression),
+            None => Ok(()),
         }
-        if root.0 as usize >= self.nodes.len() {
-            return Err(FunctionError::ForeignExpression);
-        }
-        Function::compile(self, root)
     }
 
     // Leaves
@@ -334,31 +333,13 @@ impl Graph {
         self.push(Node::Field(id, list))
     }
 
-    /// A call of another function: small ones become part of this graph, large ones are called.
-    pub fn call(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
-        if self.failure.is_some() {
-            // It has failed already; continuing to copy might never end.
-            return Expr(0);
-        }
-        let expected = function.parameters().len();
-        if arguments.len() != expected {
-            let found = arguments.len();
-            return self.fail(FunctionError::ArgumentCount {
-                function: "the function".to_owned(),
-                expected,
-                found,
-            });
-        }
-        if function.size() <= limits::INLINE {
-            return self.inline(function, arguments);
-        }
-        let id = *self
-            .function_index
-            .entry(function.place())
-            .or_insert_with(|| {
-                self.functions.push(function.clone());
-                self.functions.len() as u32 - 1
-            });
+    /// A call of another function, given by its tape.
+    pub(crate) fn call_tape(&mut self, callee: &Arc<Tape>, arguments: &[Expr]) -> Expr {
+        let place = Arc::as_ptr(callee) as usize;
+        let id = *self.callee_index.entry(place).or_insert_with(|| {
+            self.callees.push(Arc::clone(callee));
+            self.callees.len() as u32 - 1
+        });
         let list = self.list(arguments);
         self.push(Node::Call(id, list))
     }
@@ -428,7 +409,7 @@ impl Graph {
         match node {
             Node::Loop(_) => inner + 1,
             Node::Call(id, _) => {
-                let callee = self.function_at(id).map_or(0, Function::depth);
+                let callee = self.callee_at(id).map_or(0, |callee| callee.depth);
                 inner.max(callee + 1)
             }
             Node::Field(id, _) => {
@@ -488,8 +469,8 @@ impl Graph {
         self.fields.get(id as usize)
     }
 
-    pub(crate) fn function_at(&self, id: u32) -> Option<&Function> {
-        self.functions.get(id as usize)
+    pub(crate) fn callee_at(&self, id: u32) -> Option<&Arc<Tape>> {
+        self.callees.get(id as usize)
     }
 
     pub(crate) fn children(&self, node: Node) -> Vec<Expr> {

@@ -19,6 +19,7 @@
 
 mod bounds;
 mod build;
+mod compile;
 mod cost;
 mod domain;
 mod error;

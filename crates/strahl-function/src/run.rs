@@ -104,10 +104,10 @@ fn call<T: Domain>(
     stack: &mut [T],
     fuel: &mut T::Fuel,
 ) -> T {
-    let (function, arguments) = &tape.calls[at];
+    let (callee, arguments) = &tape.calls[at];
     gather(registers, arguments, stack);
-    prepare(function.tape(), stack);
-    run(function.tape(), stack, fuel)
+    prepare(callee, stack);
+    run(callee, stack, fuel)
 }
 
 #[inline]

@@ -2,7 +2,6 @@
 
 use super::{Expr, Graph, List, Node};
 use crate::error::FunctionError;
-use crate::function::Function;
 use std::collections::HashMap;
 
 impl Graph {
@@ -45,13 +44,12 @@ impl Graph {
         }
     }
 
-    /// Copies the graph of a function with its parameters replaced.
-    pub(super) fn inline(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
-        let source = function.graph();
+    /// Copies an expression of another graph with its parameters replaced.
+    pub(crate) fn inline(&mut self, source: &Self, root: Expr, arguments: &[Expr]) -> Expr {
         let base = self.variables;
         self.variables = self.variables.saturating_add(source.variables);
         let mut image: HashMap<Expr, Expr> = HashMap::new();
-        for e in source.reachable(function.root()) {
+        for e in source.reachable(root) {
             let to = |c: Expr| image.get(&c).copied().unwrap_or(Expr(u32::MAX));
             let many = |list: List| -> Vec<Expr> {
                 source.arguments(list).iter().map(|&a| to(a)).collect()
@@ -66,8 +64,8 @@ impl Graph {
                     Some(field) => self.field(field, &many(list)),
                     None => self.fail(FunctionError::ForeignExpression),
                 },
-                Node::Call(id, list) => match source.function_at(id) {
-                    Some(callee) => self.call(callee, &many(list)),
+                Node::Call(id, list) => match source.callee_at(id) {
+                    Some(callee) => self.call_tape(callee, &many(list)),
                     None => self.fail(FunctionError::ForeignExpression),
                 },
                 Node::Loop(l) => {
@@ -78,7 +76,6 @@ impl Graph {
             };
             image.insert(e, copy);
         }
-        let root = function.root();
         match image.get(&root) {
             Some(&e) => e,
             None => self.fail(FunctionError::ForeignExpression),
