@@ -1,4 +1,4 @@
-use super::packet::FourFusing;
+use super::fusing::FourFusing;
 use crate::blocks::LANES;
 use crate::blocks::convex::{FourRays, sub};
 use strahl_math::{Aabb, DVec3, Interval, Ray};

@@ -1,10 +1,10 @@
+use super::compiled::{Bounds, Csg};
 use super::half_spaces::{HalfSpace, HalfSpaces};
 use super::leaf::{Leaf, Next, Placement};
-use super::solid::{Bounds, Kind, NO_PARENT, Node};
+use super::node::{Kind, NO_PARENT, Node};
 use super::sweep::Rule;
 use super::tighten::{Form, tightened};
-use super::tree::CsgNode;
-use super::{Csg, Operands};
+use super::tree::{CsgNode, Operands};
 use crate::{GeometryError, Primitive, Shape};
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -13,6 +13,18 @@ use strahl_math::{Aabb, Transform};
 
 /// Up to this many operands the boxes are tested one by one.
 const FEW: usize = 8;
+
+impl Csg {
+    /// Compiles a tree.
+    ///
+    /// # Errors
+    /// An operation without operands, a leaf with invalid parameters, more than 2³² elements.
+    pub fn try_new(tree: CsgNode) -> Result<Self, GeometryError> {
+        let mut compiler = Compiler::default();
+        compiler.read(tree)?;
+        Ok(compiler.finish())
+    }
+}
 
 /// The context of a node: what the nodes above it determine.
 #[derive(Clone, Copy)]
@@ -75,7 +87,7 @@ struct Proto {
 
 /// The passes from description to compiled tree. None recurses: trees may be deeper than the stack.
 #[derive(Default)]
-pub(super) struct Compiler {
+struct Compiler {
     /// Parents come before their operands.
     nodes: Vec<Proto>,
     leaves: Vec<Leaf>,
@@ -87,7 +99,7 @@ pub(super) struct Compiler {
 impl Compiler {
     /// First pass: numbers the leaves in the order of the description, pushes inversions and maps down to them, merges nested
     /// operations of one kind and drops operations of one operand.
-    pub(super) fn read(&mut self, root: CsgNode) -> Result<(), GeometryError> {
+    fn read(&mut self, root: CsgNode) -> Result<(), GeometryError> {
         let context = Context {
             parent: None,
             negative: false,
@@ -263,7 +275,7 @@ impl Compiler {
     }
 
     /// The other passes.
-    pub(super) fn finish(mut self) -> Csg {
+    fn finish(mut self) -> Csg {
         self.compile_jumps();
         let boxes = self.boxes();
         let mut nodes = Vec::with_capacity(self.nodes.len());

@@ -1,13 +1,14 @@
 //! The courses of nodes along a ray: the parts of a tree that matter to the search for the first surface.
 
 use super::boxes::Slabs;
-use super::evaluate::Collector;
-use super::first::Search;
+use super::compiled::Collector;
+use super::fusing::{Fusing, TooClose};
 use super::half_spaces::HalfSpaces;
 use super::leaf::Leaf;
-use super::solid::{Kind, Node};
-use super::sweep::{Fusing, Rule};
-use super::timeline::{State, TooClose};
+use super::node::{Kind, Node};
+use super::search::Search;
+use super::sweep::Rule;
+use super::timeline::State;
 use crate::{Crossings, Side, SurfaceId};
 use strahl_accel::{Accelerator, TraversalStats};
 use strahl_math::Interval;

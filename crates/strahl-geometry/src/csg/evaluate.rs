@@ -1,10 +1,11 @@
-use super::Csg;
-use super::first::Lists;
+use super::compiled::{Collector, Csg};
+use super::fusing::Fusing;
 use super::leaf::Query;
-use super::solid::{Kind, Node};
-use super::sweep::{Event, Fusing, Rule, Slot, sort, sweep};
+use super::node::{Kind, Node};
+use super::search::Lists;
+use super::sweep::{Event, Rule, Slot, sort, sweep};
 use crate::{Crossing, Crossings, Scratch, Side, SurfaceId};
-use strahl_accel::{Accelerator, TraversalStats, Visitor};
+use strahl_accel::{Accelerator, TraversalStats};
 use strahl_math::{Aabb, Interval, Ray};
 
 /// The stacks of an evaluation, reused from ray to ray.
@@ -346,20 +347,6 @@ impl<'a> Evaluation<'a> {
         work.events.truncate(frame.events);
         work.slots.truncate(frame.slots);
         work.candidates.truncate(frame.candidates);
-    }
-}
-
-/// Collects the operands a hierarchy finds.
-pub(super) struct Collector<'a> {
-    pub(super) csg: &'a Csg,
-    pub(super) core: u32,
-    pub(super) candidates: &'a mut Vec<u32>,
-}
-
-impl Visitor for Collector<'_> {
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        self.candidates.extend(self.csg.operand(self.core + id));
-        t_max
     }
 }
 

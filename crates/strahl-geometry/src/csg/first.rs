@@ -3,17 +3,18 @@
 //! If only the first hit is wanted, the lists need not be combined node by node. The sorted crossings of all leaves are enough:
 //! each changes the state of its leaf, which may change that of the operation above, and so on; the first crossing that changes
 //! the root is the answer. This is correct as long as no two crossings are so close together that they could coincide
-//! ([`Fusing`]). If they are, this search gives up and the general one decides; so both give the same bits.
+//! ([`Fusing`](super::fusing::Fusing)). If they are, this search gives up and the general one decides; so both give the same bits.
 //!
 //! Operands that don't matter are skipped: those whose boxes the ray misses, those that begin behind the first surface found
 //! without them, and all others of an intersection once nothing is left of it. (`course` decides that, `timeline` sorts.)
 
-use super::Csg;
-use super::boxes::Slabs;
+use super::compiled::Csg;
 use super::course::Sum;
-use super::solid::{Kind, Node};
-use super::sweep::{Fusing, Rule};
-use super::timeline::{State, Timeline, TooClose};
+use super::fusing::TooClose;
+use super::node::{Kind, Node};
+use super::search::{Lists, Search};
+use super::sweep::Rule;
+use super::timeline::State;
 use crate::{PrimHit, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
 
@@ -24,41 +25,6 @@ pub(super) enum Answer {
     Certain(Option<PrimHit>),
     /// Unknown: crossings are too close together.
     Unclear,
-}
-
-/// The lists of a search, reused from ray to ray.
-#[derive(Debug, Default)]
-pub(super) struct Lists {
-    pub(super) timeline: Timeline,
-    /// The operands found by hierarchies, operation by operation.
-    pub(super) candidates: Vec<u32>,
-    /// The root's operands whose boxes begin behind the first window, and where they begin.
-    pub(super) later: Vec<(u32, f64)>,
-}
-
-/// The search of one ray for the first surface of one tree.
-pub(super) struct Search<'a> {
-    pub(super) csg: &'a Csg,
-    pub(super) ray: &'a Ray,
-    /// Computed when the first box is tested.
-    pub(super) slabs: Option<Slabs>,
-    /// The leaf on which the ray starts, and its surface there.
-    pub(super) from: Option<(u32, SurfaceId)>,
-    pub(super) fusing: Fusing,
-    /// The range of the query.
-    pub(super) range: Interval,
-    /// The beginning of the timeline: a little before the range, so that crossings on both sides of its start are
-    /// distinguished, but not behind the surface that the ray leaves.
-    pub(super) begin: f64,
-    pub(super) lists: &'a mut Lists,
-    pub(super) scratch: &'a mut Scratch,
-}
-
-/// Where a ray that starts on a surface or not begins to be searched, and where its timeline begins ([`Search::begin`]).
-pub(super) fn start_and_begin(range: Interval, on_surface: bool, fusing: &Fusing) -> (f64, f64) {
-    let forward = |t: f64| if on_surface && t < 0.0 { 0.0 } else { t };
-    let start = forward(range.min);
-    (start, forward(start - 4.0 * fusing.gap(start, start)))
 }
 
 /// Searches the first visible surface with `range.min < t <= range.max` of a tree of solids that is not too deep.
@@ -96,39 +62,7 @@ pub(super) fn all_visible(
     }
 }
 
-impl<'a> Search<'a> {
-    /// `None` if the range is empty.
-    // Inline: it has 160 bytes, which would be copied.
-    #[inline(always)]
-    fn new(
-        csg: &'a Csg,
-        ray: &'a Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        lists: &'a mut Lists,
-        scratch: &'a mut Scratch,
-    ) -> Option<Self> {
-        let fusing = Fusing::new(ray);
-        let (start, begin) = start_and_begin(range, from.is_some(), &fusing);
-        if !(start < range.max) {
-            return None;
-        }
-        lists.timeline.clear(csg.node_count());
-        lists.candidates.clear();
-        lists.later.clear();
-        Some(Self {
-            csg,
-            ray,
-            slabs: None,
-            from: from.map(|surface| csg.leaf_surface(surface)),
-            fusing,
-            range: Interval::new(start, range.max),
-            begin,
-            lists,
-            scratch,
-        })
-    }
-
+impl Search<'_> {
     /// Combines all operands and appends what is visible.
     fn run_to_the_end(&mut self, out: &mut Vec<PrimHit>) -> Result<(), TooClose> {
         let csg = self.csg;
@@ -233,20 +167,5 @@ impl Search<'_> {
             && leaf
                 .stay(self.ray, Some(surface))
                 .is_some_and(|stay| leaf.is_left_for_good(&stay, surface))
-    }
-
-    /// The surface that the ray starts on, if it belongs to this leaf.
-    pub(super) fn start_on(&self, leaf: u32) -> Option<SurfaceId> {
-        let (other, surface) = self.from?;
-        (other == leaf).then_some(surface)
-    }
-
-    /// Fails for crossings that could coincide with the surface that the ray leaves.
-    pub(super) fn check_start(&self, t: f64) -> Result<(), TooClose> {
-        if self.from.is_none() || t.abs() > self.fusing.gap(t, 0.0) {
-            Ok(())
-        } else {
-            Err(TooClose)
-        }
     }
 }

@@ -1,7 +1,8 @@
 //! The search for the first surface against the general method with lists: it gives the same bits and is rarely undecided.
 
 use super::evaluate::Evaluation;
-use super::first::{Answer, Lists, all_visible, first_visible};
+use super::first::{Answer, all_visible, first_visible};
+use super::search::Lists;
 use super::{Csg, CsgNode};
 use crate::conformance::Random;
 use crate::{

@@ -5,7 +5,7 @@
 //! so close together that crossings could coincide ([`Fusing`]), the pass reports it and the general evaluation decides, so
 //! both give the same bits.
 
-use super::sweep::Fusing;
+use super::fusing::Fusing;
 use crate::primitives::plane_t_error;
 use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId};
 use strahl_math::{Aabb, DVec3, Interval, Ray};

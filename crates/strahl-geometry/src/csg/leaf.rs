@@ -1,4 +1,4 @@
-use super::sweep::Fusing;
+use super::fusing::Fusing;
 use crate::primitives::convex::{Span, Stay};
 use crate::{
     Crossing, Crossings, PrimHit, Primitive, Scratch, Shape, Side, Solid, SurfaceId, SurfacePoint,

@@ -1,12 +1,12 @@
 //! Where a ray of a packet is inside of the nodes of a tree: the walk through what [`PacketTree`] knows.
 
-use super::Csg;
+use super::compiled::Csg;
+use super::fusing::TooClose;
 use super::leaf::Leaf;
-use super::small::Query;
-use super::solid::{Kind, Node};
+use super::node::{Kind, Node};
+use super::packet_tree::PacketTree;
+use super::query::Query;
 use super::sweep::Rule;
-use super::timeline::TooClose;
-use super::together::PacketTree;
 use crate::primitives::convex::{End, Span, Stay};
 use crate::{Scratch, Side, SurfaceId};
 use arrayvec::ArrayVec;
@@ -224,15 +224,5 @@ impl Query<'_> {
         }
         *line = both;
         Ok(())
-    }
-
-    /// Fails for a crossing and the next one if they could coincide.
-    #[inline(always)]
-    pub(super) fn check_apart(&self, t: f64, next: f64) -> Result<(), TooClose> {
-        if next - t > self.fusing.gap(t, next) || next == f64::INFINITY || t == f64::NEG_INFINITY {
-            Ok(())
-        } else {
-            Err(TooClose)
-        }
     }
 }

@@ -2,11 +2,12 @@
 //! the crossings within are never listed.
 
 use super::boxes::Slabs;
+use super::fusing::TooClose;
 use super::leaf::Leaf;
-use super::small::{Query, Small};
+use super::packet_tree::PacketTree;
+use super::query::Query;
+use super::small::Small;
 use super::states::MOST;
-use super::timeline::TooClose;
-use super::together::PacketTree;
 use crate::primitives::convex::Span;
 use crate::{PrimHit, SurfaceId};
 use arrayvec::ArrayVec;

@@ -5,27 +5,39 @@
 //! ever tested against the other operands point by point.
 //!
 //! * [`CsgNode`] describes a tree, [`Csg`] is the compiled tree: inversions pushed down to the leaves, nested equal operations
-//!   flattened, everything in flat lists that are traversed without recursion.
+//!   flattened, everything in flat lists of `node`s and leaves that are traversed without recursion.
 //! * `compile` makes the one from the other, `evaluate` traverses the tree for a ray, `sweep` combines lists, `half_spaces`
-//!   intersects all planes of an intersection in one pass.
+//!   intersects all planes of an intersection in one pass. `fusing` says which crossings may coincide.
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
-//!   matter, `timeline` goes through them. `small` does the same for trees of a few simple leaves,
-//!   with a `table` of their `states`, `one_span` for intersections and `merged` for merges among them; `packet` searches
-//!   those of convex solids for four rays side by side, `together` tests boxes and leaves of larger ones and of merges for the rays of a packet,
-//!   `lines` combines them ray by ray.
+//!   matter to a `search`, `timeline` goes through them.
+//! * `small` knows trees of a few simple leaves, with a `table` of their `states`; `small_search` answers a `query` about them,
+//!   `one_span` about intersections and `merged` about merges among them.
+//! * `packet` searches small trees of `convex` solids for four rays side by side, which `four_stays` intersects with the leaves;
+//!   `packet_tree` tests boxes and leaves of larger ones and of merges for the rays of a packet, `together` searches them
+//!   ray by ray, and `lines` combines their leaves.
+//! * `solid` makes a shape of it all: it chooses the search.
 
 mod boxes;
 mod compile;
+mod compiled;
+mod convex;
 mod course;
 mod evaluate;
 mod first;
+mod four_stays;
+mod fusing;
 mod half_spaces;
 mod leaf;
 mod lines;
 mod merged;
+mod node;
 mod one_span;
 mod packet;
+mod packet_tree;
+mod query;
+mod search;
 mod small;
+mod small_search;
 mod solid;
 mod states;
 mod sweep;
@@ -36,8 +48,8 @@ mod together;
 mod tree;
 mod within;
 
-pub use solid::Csg;
-pub use together::{PacketRanges, PacketTree};
+pub use compiled::Csg;
+pub use packet_tree::{PacketRanges, PacketTree};
 pub use tree::{CsgNode, Operands};
 
 pub(crate) use evaluate::Workspace;

@@ -1,10 +1,11 @@
 //! Intersections of convex shapes: a ray is inside of all of them on one span, so their crossings need no list. Complements of
 //! convex shapes, what is drilled out, cut holes into the span.
 
+use super::fusing::TooClose;
 use super::leaf::Leaf;
-use super::small::{Query, Small};
+use super::query::Query;
+use super::small::Small;
 use super::states::MOST;
-use super::timeline::TooClose;
 use crate::PrimHit;
 use crate::primitives::convex::{Span, Stay};
 use arrayvec::ArrayVec;

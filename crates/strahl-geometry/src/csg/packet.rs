@@ -3,59 +3,17 @@
 //! The kernel answers only where it is certain. Where crossings could coincide, or where a ray is past the beginning of a span with holes, the search
 //! with one ray decides.
 
-use super::leaf::Leaf;
-use super::solid::Csg;
+use super::compiled::Csg;
+use super::convex::Convex;
+use super::fusing::FourFusing;
 use super::states::MOST;
-use super::sweep::Fusing;
-use super::together::FourStays;
+use crate::PrimHit;
 use crate::blocks::LANES;
 use crate::blocks::convex::{FourLines, FourRays, FourSpans, select};
 use crate::primitives::convex::Span;
-use crate::{PrimHit, Shape};
 use arrayvec::ArrayVec;
 use strahl_math::Interval;
 use strahl_simd::Isa;
-
-/// The operands of an intersection of convex solids, quadrics and complements of such, or of a union or merge of convex solids and quadrics.
-#[derive(Clone, Debug)]
-pub(super) struct Convex {
-    /// The leaves' numbers, complements last.
-    leaves: ArrayVec<u32, MOST>,
-    /// The number of those that are no complements.
-    positive: usize,
-    /// Whether a point is in the tree if it is in any of them.
-    pub(super) any: bool,
-}
-
-impl Convex {
-    /// The operands of an intersection, among these leaves; `None` if one is neither a convex solid or a quadric nor the complement of one.
-    pub(super) fn of(leaves: &[Leaf]) -> Option<Self> {
-        Self::of_operands(leaves, false)
-    }
-
-    /// The operands of a tree of nothing but unions and merges; `None` if one is neither a convex solid nor a quadric.
-    pub(super) fn of_union(leaves: &[Leaf]) -> Option<Self> {
-        let operands = Self::of_operands(leaves, true)?;
-        (operands.positive == leaves.len()).then_some(operands)
-    }
-
-    fn of_operands(leaves: &[Leaf], any: bool) -> Option<Self> {
-        if !leaves.iter().all(Leaf::has_stays) {
-            return None;
-        }
-        let mut order = ArrayVec::<u32, MOST>::new();
-        for number in 0..leaves.len() {
-            order.try_push(number as u32).ok()?;
-        }
-        order.sort_by_key(|number| leaves[*number as usize].negative);
-        let positive = leaves.iter().filter(|leaf| !leaf.negative).count();
-        (positive > 0).then_some(Self {
-            leaves: order,
-            positive,
-            any,
-        })
-    }
-}
 
 impl Csg {
     /// Whether lines find their spans in the tree four at a time.
@@ -182,46 +140,6 @@ impl Csg {
 
 /// What complements drill away, and the numbers of their leaves.
 type Holes = ArrayVec<(FourSpans, u32), MOST>;
-
-/// [`Fusing`] for four rays.
-pub(super) struct FourFusing<I: Isa> {
-    scale: I::F64x4,
-}
-
-impl<I: Isa> FourFusing<I> {
-    #[inline(always)]
-    pub(super) fn new(isa: I, rays: &FourRays<I>) -> Self {
-        let [x, y, z] = rays.origin;
-        let [u, v, w] = rays.direction;
-        let far = isa.max(isa.max(isa.abs(x), isa.abs(y)), isa.abs(z));
-        let fast = isa.max(isa.max(isa.abs(u), isa.abs(v)), isa.abs(w));
-        let (zero, scale) = (isa.splat(0.0), isa.div(far, fast));
-        // No finite number: none.
-        Self {
-            scale: isa.choose_le(scale, isa.splat(f64::MAX), scale, zero),
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn margin(&self, isa: I, t: I::F64x4) -> I::F64x4 {
-        isa.mul(isa.splat(Fusing::LIMIT), isa.add(isa.abs(t), self.scale))
-    }
-
-    #[inline(always)]
-    fn gap(&self, isa: I, a: I::F64x4, b: I::F64x4) -> I::F64x4 {
-        let both = isa.add(self.margin(isa, a), self.margin(isa, b));
-        isa.mul(isa.splat(2.0), both)
-    }
-
-    /// The lanes in which nothing at `a` could coincide with something at `b`, which is not in front of it. At infinity there are no
-    /// crossings.
-    #[inline(always)]
-    fn apart(&self, isa: I, a: I::F64x4, b: I::F64x4) -> u32 {
-        isa.lt(self.gap(isa, a, b), isa.sub(b, a))
-            | isa.le(a, isa.splat(f64::NEG_INFINITY))
-            | isa.le(isa.splat(f64::INFINITY), b)
-    }
-}
 
 /// The last of some beginnings or the first of some ends, and the next one.
 struct Nearest<I: Isa> {
@@ -387,51 +305,13 @@ impl<I: Isa> Ends<I> {
     }
 }
 
-impl Leaf {
-    /// Where four lines that don't start on the shape are inside of it, if that is one span.
-    #[inline(always)]
-    fn four_spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
-        let FourStays { mut spans, outside } = self.four_stays(isa, rays);
-        spans.known &= !outside;
-        spans.met &= !outside;
-        spans
-    }
-
-    /// Where four lines that don't start on the shape are inside of it.
-    #[inline(always)]
-    pub(super) fn four_stays<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourStays {
-        let placed;
-        let rays = match self.map() {
-            None => rays,
-            Some(map) => {
-                placed = rays.to_object(isa, map);
-                &placed
-            }
-        };
-        let spans = match &self.shape {
-            Shape::Sphere(solid) => solid.spans(isa, rays),
-            Shape::Cuboid(solid) => solid.spans(isa, rays),
-            Shape::Cylinder(solid) => solid.frustum().spans(isa, rays),
-            Shape::Cone(solid) => solid.frustum().spans(isa, rays),
-            Shape::Plane(solid) => solid.spans(isa, rays),
-            Shape::Quadric(solid) => {
-                let (spans, inside_between) = solid.four_roots(isa, rays);
-                let outside = !inside_between & 0b1111;
-                return FourStays { spans, outside };
-            }
-            _ => FourSpans::default(),
-        };
-        FourStays { spans, outside: 0 }
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::super::CsgNode;
     use super::*;
     use crate::blocks::{PacketRays, PacketSpans};
     use crate::conformance::Random;
-    use crate::{Cone, Cuboid, Cylinder, Plane, Primitive, Quadric, Scratch, Sphere};
+    use crate::{Cone, Cuboid, Cylinder, Plane, Primitive, Quadric, Scratch, Shape, Sphere};
     use std::sync::Arc;
     use strahl_accel::PACKET;
     use strahl_math::{DVec3, Ray, Transform};

@@ -1,5 +1,5 @@
+use super::fusing::Fusing;
 use crate::{Crossing, Crossings, Side};
-use strahl_math::{Interval, Ray};
 
 /// How a node combines its operands. There is no difference and no inverse: those have been pushed down to the leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,59 +16,6 @@ impl Rule {
     /// The neutral operand: true (everything) for intersections, false (nothing) for unions.
     pub(super) fn neutral(self) -> bool {
         self == Self::Intersection
-    }
-}
-
-/// Decides which crossings coincide: coincident surfaces are hit at parameters that differ by rounding.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Fusing {
-    /// The parameter at which the ray is as far from its origin as its origin is from that of space.
-    scale: f64,
-}
-
-impl Fusing {
-    /// The largest gap that is ever closed, relative to the magnitudes involved. Error bounds are far below (some 1e-15),
-    /// except where a ray grazes a surface; the limit makes lists independent of the range asked for, see [`Fusing::margin`].
-    pub(super) const LIMIT: f64 = 1.0 / (1u64 << 20) as f64;
-
-    pub(super) fn new(ray: &Ray) -> Self {
-        let scale = ray.origin.abs().max_element() / ray.direction.abs().max_element();
-        Self {
-            scale: if scale.is_finite() { scale } else { 0.0 },
-        }
-    }
-
-    /// A bound of the distance between crossings that may be fused with one at `t`. Lists made for a range that is wider by a
-    /// few margins equal those of the whole line, clipped.
-    pub(super) fn margin(&self, t: f64) -> f64 {
-        Self::LIMIT * (t.abs() + self.scale)
-    }
-
-    /// Crossings further apart than this certainly don't coincide.
-    pub(super) fn gap(&self, a: f64, b: f64) -> f64 {
-        2.0 * (self.margin(a) + self.margin(b))
-    }
-
-    /// The range, wider by a few margins at both ends.
-    pub(super) fn widened(&self, range: Interval) -> Interval {
-        Interval::new(
-            range.min - 4.0 * self.margin(range.min),
-            range.max + 4.0 * self.margin(range.max),
-        )
-    }
-
-    /// The crossing's error, up to the limit.
-    pub(super) fn reach(&self, crossing: &Crossing) -> f64 {
-        let margin = self.margin(crossing.hit.t);
-        if crossing.t_error < margin {
-            crossing.t_error
-        } else {
-            margin
-        }
-    }
-
-    fn coincide(&self, a: &Crossing, b: &Crossing) -> bool {
-        (b.hit.t - a.hit.t).abs() <= self.reach(a) + self.reach(b)
     }
 }
 

@@ -1,12 +1,27 @@
 //! The logic of a small tree as sets of states, computed for all states at once.
 
 use super::leaf::Leaf;
-use super::small::Operand;
-use super::solid::{Kind, NO_PARENT, Node};
+use super::node::{Kind, NO_PARENT, Node};
 use super::states::{MOST, States};
 use super::sweep::Rule;
 use arrayvec::ArrayVec;
 use std::ops::{BitAnd, BitOr};
+
+/// A leaf of the tree. Its place in the list is its bit in the states.
+#[derive(Clone, Debug)]
+pub(super) struct Operand {
+    pub(super) leaf: u32,
+    /// Whether a line crosses it at most twice ([`Leaf::stay`]).
+    pub(super) simple: bool,
+    /// Whether it is intersected as fast as its box; otherwise its box is tested first.
+    pub(super) quick: bool,
+    /// Whether nothing is visible where the ray is outside of what it contributes.
+    pub(super) required: bool,
+    /// The states in which its surface is visible, whether the ray is in front of it or behind it.
+    pub(super) seen: States,
+    /// The states in which it matters whether the ray is inside of it.
+    pub(super) matters: States,
+}
 
 /// The tree as sets of states: bit `i` of a state says whether the ray is inside of leaf `order[i]`.
 pub(super) struct Table<'a> {

@@ -1,12 +1,9 @@
-use super::Csg;
-use super::solid::Kind;
-use super::sweep::{Fusing, Rule};
+use super::compiled::Csg;
+use super::fusing::{Fusing, TooClose};
+use super::node::Kind;
+use super::sweep::Rule;
 use crate::{Crossing, PrimHit, Side, SurfaceId};
 use strahl_math::Interval;
-
-/// Two crossings are so close together that they could coincide, or another case that only lists can decide.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct TooClose;
 
 /// A crossing of an operand that is a leaf.
 #[derive(Clone, Copy, Debug)]

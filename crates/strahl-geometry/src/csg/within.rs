@@ -1,8 +1,8 @@
 //! Proofs that a tree lies in a convex region, by branch and bound: a box that is not yet known to be in the region or outside of
 //! the tree is halved.
 
-use super::Csg;
-use super::solid::{Kind, Node};
+use super::compiled::Csg;
+use super::node::{Kind, Node};
 use super::sweep::Rule;
 use super::tighten::{Cell, Form};
 use crate::{Primitive, Solid};
