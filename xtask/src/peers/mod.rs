@@ -8,6 +8,7 @@ mod meshes;
 mod race;
 mod rays;
 mod trees;
+mod wide_tree;
 
 use crate::arguments::Arguments;
 use crate::bench::strahl_binary;

@@ -4,6 +4,7 @@
 use super::embree::{Device, Quality};
 use super::meshes::Mesh;
 use super::rays::{Batch, Segment, make};
+use super::wide_tree::{Child, Node, Tree};
 use super::{Plan, Table, mean};
 use anyhow::{Context, Result, bail};
 use strahl::accel::{Accelerator, AnyAccelerator, BLOCK, Content};
@@ -13,66 +14,6 @@ use strahl::tracing::Prepared;
 
 /// The cost of a node and of a block of four triangles, in instructions of our kernels (see "Against Embree" in the book).
 pub(super) const COST: [f64; 2] = [41.0, 76.0];
-
-/// Children of a node.
-const WIDTH: usize = 8;
-
-/// A tree of nodes with up to eight children over the triangles of a mesh.
-#[derive(Default)]
-pub(super) struct Tree {
-    pub(super) root: Child,
-    pub(super) nodes: Vec<Node>,
-    /// The triangles of the leaves.
-    ids: Vec<u32>,
-}
-
-/// The content of a box.
-#[derive(Clone, Copy)]
-pub(super) enum Child {
-    Node(usize),
-    /// A leaf: its first index in the list, and its length.
-    Leaf(usize, usize),
-}
-
-impl Default for Child {
-    fn default() -> Self {
-        Self::Leaf(0, 0)
-    }
-}
-
-/// The children of a node with their boxes: for each axis the lower planes, then the upper planes.
-#[derive(Clone)]
-pub(super) struct Node {
-    planes: [[f32; WIDTH]; 6],
-    children: [Child; WIDTH],
-    count: usize,
-}
-
-impl Default for Node {
-    fn default() -> Self {
-        Self {
-            planes: [[0.0; WIDTH]; 6],
-            children: [Child::default(); WIDTH],
-            count: 0,
-        }
-    }
-}
-
-impl Node {
-    /// Sets the lowest and the highest corner of a child's box. Children are numbered from 0.
-    pub(super) fn set_box(&mut self, place: usize, [lo, hi]: [[f32; 3]; 2]) {
-        for axis in 0..3 {
-            self.planes[2 * axis][place] = lo[axis];
-            self.planes[2 * axis + 1][place] = hi[axis];
-        }
-    }
-
-    /// Sets a child.
-    pub(super) fn set_child(&mut self, place: usize, child: Child) {
-        self.children[place] = child;
-        self.count = self.count.max(place + 1);
-    }
-}
 
 impl Tree {
     /// The tree that strahl built for a scene of one mesh.
@@ -100,13 +41,6 @@ impl Tree {
             Content::Node(number) => Child::Node(number as usize),
             Content::Leaf(ids) => self.leaf(ids.iter().copied()),
         }
-    }
-
-    /// Adds the triangles of a leaf.
-    pub(super) fn leaf(&mut self, ids: impl Iterator<Item = u32>) -> Child {
-        let first = self.ids.len();
-        self.ids.extend(ids);
-        Child::Leaf(first, self.ids.len() - first)
     }
 }
 

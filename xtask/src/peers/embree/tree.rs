@@ -1,7 +1,7 @@
 //! Uses Embree's builder by itself: it calls back for every node and leaf, so that the finished tree can be examined.
 
 use super::{Device, Handle, Quality};
-use crate::peers::trees::{Child, Node, Tree};
+use crate::peers::wide_tree::{Child, Node, Tree};
 use anyhow::{Result, bail};
 use std::ffi::{c_uint, c_void};
 use std::ptr;
