@@ -26,6 +26,8 @@ mod export;
 #[cfg(feature = "server")]
 mod guard;
 #[cfg(feature = "server")]
+mod hub;
+#[cfg(feature = "server")]
 mod lights;
 #[cfg(feature = "server")]
 mod pictures;
@@ -51,11 +53,13 @@ pub use camera::camera_sdl;
 #[cfg(feature = "server")]
 pub use export::{PicturePage, USUAL_TREES};
 #[cfg(feature = "server")]
+pub use hub::Defaults;
+#[cfg(feature = "server")]
 pub use lights::light_sdl;
 #[cfg(feature = "server")]
 pub use scenes::{LoadScene, Request};
 #[cfg(feature = "server")]
-pub use server::{Defaults, ServeError, Served, ViewOptions, serve};
+pub use server::{ServeError, Served, ViewOptions, serve};
 #[cfg(feature = "server")]
 pub use texts::Text;
 #[cfg(feature = "server")]

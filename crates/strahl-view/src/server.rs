@@ -1,8 +1,9 @@
 //! The server: one page, its files, and a WebSocket for each page that is open.
 
-use crate::builtin::{Builtin, Offered};
+use crate::builtin::Builtin;
 use crate::client::Client;
 use crate::guard::{Guard, guard};
+use crate::hub::{Defaults, Hub};
 use crate::pictures::Pictures;
 use crate::protocol::LONGEST_MESSAGE;
 use crate::scenes::{LoadScene, Scenes};
@@ -22,29 +23,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use strahl::prelude::*;
 use tokio::net::TcpListener;
 use tokio::sync::{Notify, Semaphore};
-
-/// The settings of pictures for which neither the page nor the scene has a value.
-#[derive(Clone, Debug)]
-pub struct Defaults {
-    /// Width and height in pixels; `None` takes the scene's size, or else 800x600.
-    pub size: Option<(u32, u32)>,
-    /// Where rays go through the pixels.
-    pub sampling: Sampling,
-    /// Seed of the sampling.
-    pub seed: u64,
-    /// The deepest level of ray trees.
-    pub depth: Option<u32>,
-    /// The smallest weight of branches.
-    pub cutoff: Option<f64>,
-    /// The largest number of rays in a tree.
-    pub max_tree_rays: u32,
-    /// The shading model of all objects.
-    pub shading: Option<ShadingModel>,
-    /// The acceleration structure.
-    pub accelerator: AcceleratorKind,
-    /// The value of `clock`.
-    pub clock: f64,
-}
 
 /// What is served, and how.
 pub struct ViewOptions {
@@ -110,21 +88,6 @@ pub enum ServeError {
     /// Anything else.
     #[error(transparent)]
     Io(#[from] std::io::Error),
-}
-
-/// What all pages share.
-pub(crate) struct Hub {
-    pub(crate) scenes: Arc<Scenes>,
-    pub(crate) pictures: Arc<Pictures>,
-    pub(crate) session: Session,
-    pub(crate) offered: Option<Offered>,
-    pub(crate) scene: PathBuf,
-    pub(crate) defaults: Defaults,
-    pub(crate) edit: bool,
-    pub(crate) editor: Option<String>,
-    pub(crate) pages: AtomicU64,
-    /// A place for each page that is open.
-    pub(crate) places: Arc<Semaphore>,
 }
 
 /// The most pages that are open at once.

@@ -1,11 +1,11 @@
 //! What a page's settings mean, and what it is told about scenes and pictures.
 
+use crate::hub::{Defaults, Hub};
 use crate::pictures::{Kind, Picture};
 use crate::protocol::{
     CameraData, DEEPEST, LONGEST_SIDE, MOST_LIGHTS, MOST_PIXELS, MovedLight, Settings, Slot,
 };
 use crate::scenes::{Compiled, Key, Request};
-use crate::server::{Defaults, Hub};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;

@@ -3,9 +3,9 @@
 use super::messages::{key_of, moved};
 use super::{Busy, Client, Gone};
 use crate::export::{PicturePage, USUAL_TREES};
+use crate::hub::Hub;
 use crate::pictures::{End, Kind, Picture};
 use crate::protocol::{MARKS, Slot, header};
-use crate::server::Hub;
 use axum::extract::ws::Message;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
