@@ -5,21 +5,9 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import fields
-from typing import Any, TYPE_CHECKING, get_args, get_type_hints
+from typing import Any, get_args, get_type_hints
 
-if TYPE_CHECKING:
-    from strahl._tree import Explanation
-
-
-class Node:
-    """What all parts of a tree have."""
-
-    _json: dict[str, Any]
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same as plain dictionaries and lists, as the JSON has them."""
-        return dict(self._json)
-
+from strahl._tree import Explanation
 
 _HINTS: dict[type, dict[str, Any]] = {}
 
@@ -61,8 +49,6 @@ def _object(of: type, data: dict[str, Any]) -> Any:
 
 def read(text: str) -> Explanation:
     """An explanation from its JSON."""
-    from strahl._tree import Explanation
-
     explanation: Explanation = _object(Explanation, json.loads(text))
     for sample in explanation.samples:
         by_number = {ray.id: ray for ray in sample.rays}

@@ -29,7 +29,7 @@ from html import escape
 from typing import Any
 
 from strahl import _strahl
-from strahl._reader import Node
+from strahl._node import Node
 
 Triple = tuple[float, float, float]
 '''
