@@ -76,7 +76,7 @@ class Light(Movable):
 
     def with_body(self, body: Object) -> Object:
         """The light together with an object that shows where it is and casts no shadow: a lamp, to be added to a scene or moved as one."""
-        return Object(_strahl.Object.combined("union", [(self._core, self._place), body._core.lamp()], caller()))
+        return Object(_strahl.combined("union", [(self._core, self._place), body._core.lamp()], caller()))
 
 
 def _light(kind: str, color: ColorLike, falloff: Falloff, shadows: bool, highlights: bool, fogged: bool, clearance: float, name: str | None, **numbers: Any) -> Light:

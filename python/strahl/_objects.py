@@ -123,7 +123,7 @@ def _combined(operation: str, objects: Sequence[Object]) -> Object:
         if not isinstance(thing, Object):
             raise TypeError(f"only objects can be combined, not {type(thing).__name__}; lights have light_group and Light.with_body")
     cores = [thing._core for thing in objects]
-    return Object(_strahl.Object.combined(operation, cores, caller()))
+    return Object(_strahl.combined(operation, cores, caller()))
 
 
 def light_group(*things: Object | Light | Iterable[Object | Light], global_lights: bool = False, name: str | None = None) -> Object:
@@ -139,7 +139,7 @@ def light_group(*things: Object | Light | Iterable[Object | Light], global_light
         else:
             raise TypeError(f"a light group consists of objects and lights, not {type(thing).__name__}")
     operation = "light group with global lights" if global_lights else "light group"
-    return with_look(_strahl.Object.combined(operation, parts, caller()), None, name)
+    return with_look(_strahl.combined(operation, parts, caller()), None, name)
 
 
 def _flat(things: Iterable[Any]) -> Iterator[Any]:

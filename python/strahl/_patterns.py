@@ -171,7 +171,7 @@ class Pattern(Movable):
     @classmethod
     def pigment(cls, pigment: Pigment) -> Pattern:
         """The grey value of a pigment."""
-        return cls._of(_strahl.Pattern.pigment(pigment._core), "pigment")
+        return cls._of(pigment._core.pattern(), "pigment")
 
     @classmethod
     def quilted(cls, control0: float = 1.0, control1: float = 1.0) -> Pattern:

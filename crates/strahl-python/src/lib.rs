@@ -6,6 +6,7 @@
 mod air;
 mod asked;
 mod cameras;
+mod combine;
 mod convert;
 mod errors;
 mod film;
@@ -49,6 +50,7 @@ fn _strahl(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<textures::Picture>()?;
     module.add_class::<textures::Pigment>()?;
     module.add_class::<textures::Texture>()?;
+    module.add_function(wrap_pyfunction!(combine::combined, module)?)?;
     module.add_function(wrap_pyfunction!(explanation_page, module)?)?;
     module.add_function(wrap_pyfunction!(film::encode_png, module)?)?;
     module.add_function(wrap_pyfunction!(load::load, module)?)?;

@@ -2,7 +2,6 @@
 
 use crate::convert::contiguous;
 use crate::errors;
-use crate::lights::Light;
 use crate::looks::Material;
 use crate::maps::{self, Map};
 use numpy::PyReadonlyArray2;
@@ -25,9 +24,6 @@ pub(crate) struct Piece {
     pub(crate) depth: u32,
 }
 
-/// The deepest nesting of objects.
-const DEEPEST: u32 = 1000;
-
 impl Piece {
     /// An object without parts that was made at a line of a program.
     pub(crate) fn new(object: scene::Object, place: Option<&(String, u32)>) -> Self {
@@ -46,7 +42,7 @@ impl Piece {
     }
 
     /// An object with parts that was made at a line of a program.
-    fn of_parts(
+    pub(crate) fn of_parts(
         mut object: scene::Object,
         groups: Vec<Group>,
         mut sources: SourceMap,
@@ -157,33 +153,6 @@ pub(crate) struct Object(pub(crate) Arc<Piece>);
 impl Object {
     pub(crate) fn new(object: scene::Object, place: Option<(String, u32)>) -> Self {
         Self(Arc::new(Piece::new(object, place.as_ref())))
-    }
-}
-
-/// A part of a combination.
-#[derive(FromPyObject)]
-enum Part {
-    Object(Py<Object>),
-    /// With the line of the program that made it.
-    Light(Py<Light>, Option<(String, u32)>),
-}
-
-impl Part {
-    fn depth(&self) -> u32 {
-        match self {
-            Self::Object(object) => object.get().0.depth,
-            Self::Light(..) => 1,
-        }
-    }
-
-    fn adopted(&self, sources: &mut SourceMap, groups: &mut Vec<Group>) -> scene::Object {
-        match self {
-            Self::Object(object) => adopt(&object.get().0, sources, groups),
-            Self::Light(light, place) => {
-                let light = light.get().adopted(place.clone(), sources, groups);
-                scene::Object::light(light)
-            }
-        }
     }
 }
 
@@ -308,43 +277,6 @@ impl Object {
         });
         let object = scene::Object::csg(CsgOp::Union, each.collect::<PyResult<_>>()?);
         let depth = self.0.depth + 1;
-        Ok(Self(Arc::new(Piece::of_parts(
-            object, groups, sources, depth, place,
-        ))))
-    }
-
-    /// Combines objects, and lights that belong to them; `operation` is that of POV-Ray's language.
-    #[staticmethod]
-    fn combined(
-        operation: &str,
-        objects: Vec<Part>,
-        place: Option<(String, u32)>,
-    ) -> PyResult<Self> {
-        let op = match operation {
-            "union" => CsgOp::Union,
-            "merge" => CsgOp::Merge,
-            "intersection" => CsgOp::Intersection,
-            "difference" => CsgOp::Difference,
-            "inverse" => CsgOp::Inverse,
-            "clip" => CsgOp::Clip,
-            "bound" => CsgOp::Bound,
-            "light group" | "light group with global lights" => CsgOp::LightGroup {
-                global_lights: operation != "light group",
-            },
-            other => return Err(errors::value(format!("there is no operation `{other}`"))),
-        };
-        let depth = objects.iter().map(Part::depth).max().unwrap_or(0) + 1;
-        if depth > DEEPEST {
-            return Err(errors::value(format!(
-                "objects are nested more than {DEEPEST} deep: combine lists of them by strahl.union and the like"
-            )));
-        }
-        let (mut sources, mut groups) = (SourceMap::default(), vec![]);
-        let children = objects
-            .iter()
-            .map(|part| part.adopted(&mut sources, &mut groups))
-            .collect();
-        let object = scene::Object::csg(op, children);
         Ok(Self(Arc::new(Piece::of_parts(
             object, groups, sources, depth, place,
         ))))

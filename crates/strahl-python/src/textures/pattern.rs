@@ -5,7 +5,6 @@ use crate::errors;
 use crate::maps::Map;
 use crate::object::Object;
 use crate::textures::image::Picture;
-use crate::textures::pigment::Pigment;
 use pyo3::prelude::*;
 use std::sync::Arc;
 use strahl::math::noise::{NoiseGenerator, Turbulence};
@@ -65,7 +64,7 @@ pub(super) fn transform(modifiers: &mut Modifiers, by: &Transform) {
 }
 
 impl Pattern {
-    fn of(pattern: Of) -> Self {
+    pub(super) fn of(pattern: Of) -> Self {
         let mut field = PatternField::from(pattern);
         // Numbers of blocks and grey values are taken as they are, as in POV-Ray's language.
         if field.pattern.block_count().is_some() || matches!(field.pattern, Of::Image(_)) {
@@ -172,11 +171,6 @@ impl Pattern {
     #[staticmethod]
     fn object(object: &Object) -> Self {
         Self::of(Of::Object(strahl::sdl::inside(&object.0.object)))
-    }
-
-    #[staticmethod]
-    fn pigment(pigment: &Pigment) -> Self {
-        Self::of(Of::Pigment(Arc::new(pigment.0.clone())))
     }
 
     #[staticmethod]

@@ -70,6 +70,11 @@ impl Pigment {
         Self(Of::UvMapped(Box::new(self.0.clone())))
     }
 
+    /// Its grey values as a pattern.
+    fn pattern(&self) -> Pattern {
+        Pattern::of(Kind::Pigment(Arc::new(self.0.clone())))
+    }
+
     /// With a colour for quick pictures.
     fn quick(&self, color: ColorNumbers) -> Self {
         Self(Of::Quick(color.into(), Box::new(self.0.clone())))
