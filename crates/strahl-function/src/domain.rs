@@ -4,6 +4,7 @@ use crate::bounds::Bounds;
 use crate::field::ScalarField;
 use crate::limits;
 use crate::op::{BinaryOp, UnaryOp, power};
+use strahl_math::det;
 
 /// Whether a loop continues.
 pub(crate) enum Round<M> {
@@ -120,6 +121,18 @@ impl Lanes {
         Self(out)
     }
 
+    /// Changed by a function that changes all numbers of a list.
+    #[inline(always)]
+    fn all(mut self, change: impl FnOnce(&mut [f64])) -> Self {
+        change(&mut self.0);
+        self
+    }
+
+    /// Whether all numbers are the same.
+    fn is_same(&self) -> bool {
+        self.0.iter().all(|x| x.to_bits() == self.0[0].to_bits())
+    }
+
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let mut out = self.0;
@@ -166,12 +179,15 @@ impl Domain for Lanes {
                 }
                 result
             }
+            UnaryOp::Sin => a.all(det::sin_all),
+            UnaryOp::Cos => a.all(det::cos_all),
             op => a.map(|x| op.value(x)),
         }
     }
     #[inline]
     fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
         match op {
+            BinaryOp::Pow if b.is_same() => a.all(|bases| det::pow_all(bases, b.0[0])),
             BinaryOp::Add => a.zip(b, |x, y| x + y),
             BinaryOp::Sub => a.zip(b, |x, y| x - y),
             BinaryOp::Mul => a.zip(b, |x, y| x * y),
@@ -192,15 +208,13 @@ impl Domain for Lanes {
         Self(out)
     }
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
-        let mut point = [0.0; limits::PARAMETERS];
+        let mut columns: [&[f64]; limits::PARAMETERS] = [&[]; limits::PARAMETERS];
         let arity = arguments.len().min(limits::PARAMETERS);
-        let mut out = [0.0; LANES];
-        for (i, value) in out.iter_mut().enumerate() {
-            for (x, lanes) in point.iter_mut().zip(arguments) {
-                *x = lanes.0[i];
-            }
-            *value = field.value(&point[..arity]);
+        for (column, lanes) in columns.iter_mut().zip(arguments) {
+            *column = &lanes.0;
         }
+        let mut out = [0.0; LANES];
+        field.store_values(&columns[..arity], &mut out);
         Self(out)
     }
     fn round(counter: Self, to: Self, fuel: &mut [u64; LANES], price: u64) -> Round<[bool; LANES]> {

@@ -1,5 +1,6 @@
 use crate::bounds::Bounds;
 use crate::cost::Cost;
+use crate::limits;
 use std::fmt::Debug;
 
 /// A real function that expressions can call without knowing its formula: a pattern, one channel of a pigment, a spline, noise.
@@ -13,6 +14,17 @@ pub trait ScalarField: Debug + Send + Sync {
 
     /// The value at the arguments, [`arity`](Self::arity) many. The same arguments always give the same bits.
     fn value(&self, arguments: &[f64]) -> f64;
+
+    /// Whether the values at several points take less time together ([`store_values`](Self::store_values)).
+    fn gains_together(&self) -> bool {
+        false
+    }
+
+    /// Stores the values at several points, of which `arguments` has a column of each argument: the bits of [`value`](Self::value). A value whose
+    /// columns are too short is NaN. By default one by one.
+    fn store_values(&self, arguments: &[&[f64]], values: &mut [f64]) {
+        store_one_by_one(self, arguments, values);
+    }
 
     /// The cost of [`value`](Self::value). A field that evaluates others must include their cost, or it may never end.
     fn cost(&self) -> Cost {
@@ -49,6 +61,22 @@ pub trait ScalarField: Debug + Send + Sync {
     }
 }
 
+/// [`ScalarField::store_values`] one by one.
+pub(crate) fn store_one_by_one(
+    field: &(impl ScalarField + ?Sized),
+    arguments: &[&[f64]],
+    values: &mut [f64],
+) {
+    let mut point = [0.0; limits::PARAMETERS];
+    let arity = arguments.len().min(limits::PARAMETERS);
+    for (at, value) in values.iter_mut().enumerate() {
+        for (x, column) in point.iter_mut().zip(arguments) {
+            *x = column.get(at).copied().unwrap_or(f64::NAN);
+        }
+        *value = field.value(&point[..arity]);
+    }
+}
+
 /// How far from a place the values are taken of which the difference is the derivative: the cube root of the unit roundoff balances rounding
 /// against the third derivative.
 pub(crate) fn step(x: f64) -> f64 {
@@ -61,8 +89,8 @@ pub(crate) fn central_differences(
     arguments: &[f64],
     partials: &mut [f64],
 ) -> f64 {
-    let mut shifted = [0.0; crate::limits::PARAMETERS];
-    let shifted = &mut shifted[..arguments.len().min(crate::limits::PARAMETERS)];
+    let mut shifted = [0.0; limits::PARAMETERS];
+    let shifted = &mut shifted[..arguments.len().min(limits::PARAMETERS)];
     shifted.copy_from_slice(&arguments[..shifted.len()]);
     for (i, partial) in partials.iter_mut().enumerate().take(shifted.len()) {
         let x = shifted[i];

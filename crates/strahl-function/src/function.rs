@@ -3,7 +3,7 @@ use crate::compile::compile;
 use crate::cost::Cost;
 use crate::domain::{Domain, Dual, LANES, Lanes};
 use crate::error::FunctionError;
-use crate::field::ScalarField;
+use crate::field::{ScalarField, store_one_by_one};
 use crate::graph::{Expr, Graph};
 use crate::limits;
 use crate::rate::Rate;
@@ -300,6 +300,19 @@ impl Graph {
     }
 }
 
+/// Calls something with the workspace of this thread, which is taken and put back, so that a field within a function can do the same.
+fn with_workspace<R>(call: impl FnOnce(&mut Workspace) -> R) -> R {
+    thread_local! {
+        static WORKSPACE: Cell<Option<Box<Workspace>>> = Cell::default();
+    }
+    WORKSPACE.with(|cell| {
+        let mut workspace = cell.take().unwrap_or_default();
+        let result = call(&mut workspace);
+        cell.set(Some(workspace));
+        result
+    })
+}
+
 impl ScalarField for Function {
     fn arity(&self) -> usize {
         self.parameters().len()
@@ -322,18 +335,22 @@ impl ScalarField for Function {
     }
 
     fn value(&self, arguments: &[f64]) -> f64 {
-        thread_local! {
-            static WORKSPACE: Cell<Option<Box<Workspace>>> = Cell::default();
-        }
         if arguments.is_empty() {
             return self.constant().unwrap_or(f64::NAN);
         }
-        // Taken and put back, so that a field within the function can do the same.
-        WORKSPACE.with(|cell| {
-            let mut workspace = cell.take().unwrap_or_default();
-            let value = Function::value(self, &mut workspace, arguments);
-            cell.set(Some(workspace));
-            value
-        })
+        with_workspace(|workspace| Function::value(self, workspace, arguments))
+    }
+
+    fn gains_together(&self) -> bool {
+        self.tape.gains_together()
+    }
+
+    /// A batch always takes as long as a full one.
+    fn store_values(&self, arguments: &[&[f64]], values: &mut [f64]) {
+        if 2 * values.len() < LANES || arguments.is_empty() || !self.gains_together() {
+            store_one_by_one(self, arguments, values);
+            return;
+        }
+        with_workspace(|workspace| self.values(workspace, arguments, values));
     }
 }

@@ -140,6 +140,14 @@ impl Tape {
             && self.loops.iter().all(|l| l.body.is_bounded())
     }
 
+    /// Whether a batch takes less time than its points one by one: there are no loops, whose numbers of rounds may differ, and all fields it
+    /// reads gain, too.
+    pub(crate) fn gains_together(&self) -> bool {
+        self.loops.is_empty()
+            && self.fields.iter().all(|f| f.field.gains_together())
+            && self.calls.iter().all(|(f, _)| f.gains_together())
+    }
+
     /// Whether the rates of change of all fields it reads can be known.
     pub(crate) fn has_rates(&self) -> bool {
         self.fields.iter().all(|f| f.field.has_rates())

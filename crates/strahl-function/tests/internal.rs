@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that unwraps fails as it should")]
 
 use std::collections::BTreeMap;
-use strahl_function::{Bounds, Function, FunctionError, Graph, Workspace, internal};
+use strahl_function::{Bounds, Function, FunctionError, Graph, ScalarField, Workspace, internal};
 use strahl_math::noise::NoiseGenerator;
 
 /// A function of the point with fixed parameters.
@@ -132,6 +132,32 @@ fn bounds_contain_values_around_the_measured_points() {
                 "{} {p:?}: {value} is not in {bounds:?}",
                 row.name
             );
+        }
+    }
+}
+
+#[test]
+fn batches_have_the_bits_of_points() {
+    let mut ws = Workspace::new();
+    for row in measured() {
+        let f = at(row.name, &row.arguments[3..]).unwrap();
+        for count in [1, 3, 16, 21] {
+            let column = |axis: usize| -> Vec<f64> {
+                let place = |k: u32| row.arguments[axis] + 0.37 * f64::from(k);
+                (0..count).map(place).collect()
+            };
+            let columns = [column(0), column(1), column(2)];
+            let mut values = vec![0.0; count as usize];
+            f.values(&mut ws, &columns.each_ref().map(|c| &c[..]), &mut values);
+            let mut fields = vec![0.0; count as usize];
+            ScalarField::store_values(&f, &columns.each_ref().map(|c| &c[..]), &mut fields);
+            for (k, value) in values.into_iter().enumerate() {
+                let p = [columns[0][k], columns[1][k], columns[2][k]];
+                let single = f.value(&mut ws, &p);
+                let is_same =
+                    |x: f64| x.to_bits() == single.to_bits() || x.is_nan() && single.is_nan();
+                assert!(is_same(value) && is_same(fields[k]), "{} {p:?}", row.name);
+            }
         }
     }
 }

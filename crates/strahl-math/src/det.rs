@@ -9,7 +9,7 @@ mod sine;
 pub use power::powers;
 pub use sine::{sines, sines_and_cosines};
 
-use strahl_simd::{Simd, dispatch};
+use strahl_simd::{Isa, Simd, dispatch};
 
 /// Sine of `x` radians.
 pub fn sin(x: f64) -> f64 {
@@ -117,6 +117,33 @@ pub fn pow_all(values: &mut [f64], exponent: f64) {
     }
 }
 
+/// Replaces all angles, in radians, with their sines, four at a time, with the bits of [`sin`].
+pub fn sin_all(angles: &mut [f64]) {
+    let (fours, rest) = angles.as_chunks_mut::<4>();
+    dispatch!(Simd::best(), isa => {
+        for four in fours {
+            *four = isa.store(sines(isa, isa.load(four)));
+        }
+    });
+    for angle in rest {
+        *angle = sin(*angle);
+    }
+}
+
+/// Replaces all angles, in radians, with their cosines, four at a time, with the bits of [`cos`].
+pub fn cos_all(angles: &mut [f64]) {
+    let (fours, rest) = angles.as_chunks_mut::<4>();
+    dispatch!(Simd::best(), isa => {
+        for four in fours {
+            let [_, cosines] = sines_and_cosines(isa, isa.load(four));
+            *four = isa.store(cosines);
+        }
+    });
+    for angle in rest {
+        *angle = cos(*angle);
+    }
+}
+
 /// An exponent that is a whole number from 0 to 64.
 #[inline]
 fn whole(exponent: f64) -> Option<u32> {
@@ -181,6 +208,20 @@ mod tests {
             for base in [0.0, 0.3, 1.0, 1.5, -2.0, 1e300, f64::NAN] {
                 let (a, b) = (known.of(base, exponent), super::pow(base, exponent));
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
+            }
+        }
+    }
+
+    #[test]
+    fn lists_of_angles_of_any_length_have_the_same_bits() {
+        for count in 0..10 {
+            let angles: Vec<f64> = (0..count).map(|k| f64::from(k) * 1.37 - 2.0).collect();
+            let (mut sines, mut cosines) = (angles.clone(), angles.clone());
+            super::sin_all(&mut sines);
+            super::cos_all(&mut cosines);
+            for (k, angle) in angles.into_iter().enumerate() {
+                assert_eq!(sines[k].to_bits(), super::sin(angle).to_bits());
+                assert_eq!(cosines[k].to_bits(), super::cos(angle).to_bits());
             }
         }
     }

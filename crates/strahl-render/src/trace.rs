@@ -17,9 +17,9 @@ mod aim;
 mod area_light;
 #[cfg(test)]
 mod batch_tests;
+mod colors;
 mod detail;
 mod eye;
-mod fractals;
 mod gather;
 mod lights;
 mod medium;

@@ -9,7 +9,7 @@ use strahl_math::DVec3;
 use strahl_math::noise::{dnoise, noise};
 
 use crate::image_map::ImageMap;
-use crate::patterns::{Modifiers, Pattern, PatternField, TexturePoint, Warp, water};
+use crate::patterns::{Batch, Modifiers, Pattern, PatternField, TexturePoint, Warp, water};
 use crate::pigment::{Blend, BlendMap};
 
 /// A map from pattern values to heights: value, height and slope, by cubic Hermite interpolation.
@@ -149,11 +149,14 @@ impl PovNormal {
                 let field = self.field(pattern);
                 // The tetrahedron surrounds the displaced point; its corners are not displaced again.
                 let heights = |corners| {
-                    let values = field.values_moved(&corners, point);
-                    match slopes {
-                        None => values,
-                        Some(map) => values.map(|value| map.height(value)),
+                    let mut heights = [0.0; 4];
+                    field.store_moved(&Batch::of_four(corners, point), &mut heights);
+                    if let Some(map) = slopes {
+                        for height in &mut heights {
+                            *height = map.height(*height);
+                        }
                     }
+                    heights
                 };
                 let center = field.moved(transformed);
                 n - tetrahedral_gradient(center, self.accuracy, heights) * self.amount

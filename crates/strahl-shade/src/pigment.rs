@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use crate::ColorFt;
 use crate::image_map::ImageMap;
-use crate::patterns::{Fractal, Modifiers, PatternField, TexturePoint};
-use strahl_math::{DVec2, DVec3};
+use crate::patterns::{BATCH, Batch, Modifiers, PatternField, TexturePoint};
+use arrayvec::ArrayVec;
+use strahl_math::DVec3;
 
 /// Entries at positions in `0..=1`, between which a value is looked up: the common part of all maps.
 ///
@@ -56,16 +57,6 @@ impl<T> BlendMap<T> {
     }
 }
 
-impl<'a, T> Blend<'a, T> {
-    /// Both entries and the share of the second, if there are two.
-    fn pair(&self) -> Option<(&'a T, &'a T, f64)> {
-        match *self {
-            Self::One(_) => None,
-            Self::Two(low, high, t) => Some((low, high, t)),
-        }
-    }
-}
-
 impl BlendMap<ColorFt> {
     /// The colour for `value`.
     fn color(&self, value: f64) -> ColorFt {
@@ -73,41 +64,6 @@ impl BlendMap<ColorFt> {
             None => ColorFt::default(),
             Some(Blend::One(color)) => *color,
             Some(Blend::Two(low, high, t)) => low.lerp(*high, t),
-        }
-    }
-}
-
-/// A pigment whose colours are selected by a fractal: those of several points take less time together.
-#[derive(Clone, Copy, Debug)]
-pub struct FractalPigment<'a> {
-    fractal: &'a Fractal,
-    field: &'a PatternField,
-    map: &'a BlendMap<ColorFt>,
-}
-
-impl FractalPigment<'_> {
-    /// The number of colours that are computed at once.
-    const FEW: usize = 16;
-
-    /// The point of the complex plane to which warps and turbulence lead from a position.
-    pub fn place(&self, position: DVec3) -> DVec2 {
-        self.field.moved(position).truncate()
-    }
-
-    /// Whether both are one pigment, not just equal ones.
-    pub fn is(&self, other: &Self) -> bool {
-        std::ptr::eq(self.map, other.map)
-    }
-
-    /// Stores the colours at points of the complex plane. The slices have the same length.
-    pub fn store_colors(&self, places: &[DVec2], colors: &mut [ColorFt]) {
-        let mut values = [0.0; Self::FEW];
-        for (places, colors) in places.chunks(Self::FEW).zip(colors.chunks_mut(Self::FEW)) {
-            let values = &mut values[..places.len()];
-            self.fractal.store_values(places, values);
-            for (color, value) in colors.iter_mut().zip(values) {
-                *color = self.map.color(self.field.value_of_raw(*value));
-            }
         }
     }
 }
@@ -206,70 +162,151 @@ impl Pigment {
         }
     }
 
-    /// The colours at four places, which take the place of the point's position.
-    pub(crate) fn colors_of_four(&self, places: &[DVec3; 4], point: &TexturePoint) -> [ColorFt; 4] {
+    /// Whether colours at several points take less time together.
+    pub fn gains_together(&self) -> bool {
         match self {
-            Self::Solid(color, _) => [*color; 4],
-            Self::ColorMap(field, map) if field.pattern.is_fast_at_four() => {
-                let places = places.map(|place| field.moved(place));
-                let values = field.values_moved(&places, point);
-                values.map(|value| map.color(value))
+            Self::Solid(..) | Self::Image(..) => false,
+            Self::ColorMap(field, _) => field.pattern.gains_together(),
+            Self::PigmentMap(field, map) => {
+                field.pattern.gains_together()
+                    || map.entries.iter().any(|(_, p)| p.gains_together())
             }
-            Self::PigmentMap(field, map) if field.pattern.is_fast_at_four() => {
-                let places = places.map(|place| field.moved(place));
-                let values = field.values_moved(&places, point);
-                Self::blended_at_four(values.map(|value| map.lookup(value)), &places, point)
-            }
-            _ => places.map(|place| self.color_at(&point.at(place))),
+            Self::Blocks(_, pigments) => pigments.iter().any(Self::gains_together),
+            Self::Average(members, _) => members.iter().any(|(_, p)| p.gains_together()),
+            Self::UvMapped(pigment) | Self::Quick(_, pigment) => pigment.gains_together(),
         }
     }
 
-    /// The colours of blends at four places.
-    fn blended_at_four(
-        blends: [Option<Blend<'_, Self>>; 4],
-        places: &[DVec3; 4],
-        point: &TexturePoint,
-    ) -> [ColorFt; 4] {
-        let pairs = [0, 1, 2, 3].map(|k| blends[k].as_ref().and_then(Blend::pair));
-        if let [
-            Some((low, high, t0)),
-            Some((_, _, t1)),
-            Some((_, _, t2)),
-            Some((_, _, t3)),
-        ] = pairs
-            && pairs
-                .iter()
-                .flatten()
-                .all(|(a, b, _)| std::ptr::eq(*a, low) && std::ptr::eq(*b, high))
-        {
-            let (low, high) = (
-                low.colors_of_four(places, point),
-                high.colors_of_four(places, point),
-            );
-            let shares = [t0, t1, t2, t3];
-            return std::array::from_fn(|k| low[k].lerp(high[k], shares[k]));
-        }
-        std::array::from_fn(|k| {
-            let color = |pigment: &Self| pigment.color_moved(point, places[k]);
-            match blends[k] {
-                None => ColorFt::default(),
-                Some(Blend::One(pigment)) => color(pigment),
-                Some(Blend::Two(low, high, t)) => color(low).lerp(color(high), t),
+    /// Whether its colours depend on the normal of the surface.
+    pub fn sees_normals(&self) -> bool {
+        match self {
+            Self::Solid(..) | Self::Image(..) => false,
+            Self::ColorMap(field, _) => field.pattern.sees_normals(),
+            Self::PigmentMap(field, map) => {
+                field.pattern.sees_normals() || map.entries.iter().any(|(_, p)| p.sees_normals())
             }
-        })
+            Self::Blocks(field, pigments) => {
+                field.pattern.sees_normals() || pigments.iter().any(Self::sees_normals)
+            }
+            Self::Average(members, _) => members.iter().any(|(_, p)| p.sees_normals()),
+            Self::UvMapped(pigment) | Self::Quick(_, pigment) => pigment.sees_normals(),
+        }
     }
 
-    /// The pigment as one whose colours a fractal selects, if it is one.
-    pub(crate) fn of_fractal(&self) -> Option<FractalPigment<'_>> {
-        let Self::ColorMap(field, map) = self else {
-            return None;
-        };
-        let fractal = field.fractal()?;
-        Some(FractalPigment {
-            fractal,
-            field,
-            map,
-        })
+    /// Stores the colours at several points, with the bits of [`Pigment::color_at`]. The slices have the same length.
+    pub fn store_colors(&self, points: &[TexturePoint], colors: &mut [ColorFt]) {
+        for (points, colors) in points.chunks(BATCH).zip(colors.chunks_mut(BATCH)) {
+            self.store_batch::<BATCH>(&Batch::of(points), colors);
+        }
+    }
+
+    /// Stores the colours at the places of a batch, as many as there are.
+    pub(crate) fn store_batch<const N: usize>(&self, batch: &Batch<'_, N>, colors: &mut [ColorFt]) {
+        match self {
+            Self::Solid(color, _) => colors.fill(*color),
+            Self::ColorMap(field, map) => {
+                let mut values = [0.0; N];
+                let values = &mut values[..batch.len()];
+                field.store_moved(&batch.moved(|p| field.moved(p)), values);
+                for (color, value) in colors.iter_mut().zip(values) {
+                    *color = map.color(*value);
+                }
+            }
+            Self::PigmentMap(field, map) => {
+                let mut values = [0.0; N];
+                let values = &mut values[..batch.len()];
+                let moved = batch.moved(|p| field.moved(p));
+                field.store_moved(&moved, values);
+                Self::store_blends(map, values, &moved, colors);
+            }
+            Self::Blocks(field, pigments) => {
+                let moved = batch.moved(|p| field.moved(p));
+                let last = pigments.len().saturating_sub(1);
+                let blocks = moved.places.iter().map(|p| field.block_moved(*p).min(last));
+                let blocks: ArrayVec<usize, N> = blocks.collect();
+                colors.fill(ColorFt::default());
+                for (number, pigment) in pigments.iter().enumerate() {
+                    pigment.store_part(&moved, |lane| blocks[*lane] == number, colors);
+                }
+            }
+            Self::Image(..) => {
+                let all = batch.points.iter().zip(&batch.places);
+                for (color, (point, place)) in colors.iter_mut().zip(all) {
+                    *color = self.color_at(&point.at(*place));
+                }
+            }
+            Self::Average(members, modifiers) => {
+                let moved = batch.moved(|p| modifiers.moved(p));
+                let mut part = [ColorFt::default(); N];
+                let part = &mut part[..batch.len()];
+                let mut total = 0.0;
+                colors.fill(ColorFt::default());
+                for (weight, pigment) in members {
+                    pigment.store_batch(&moved, part);
+                    for (sum, color) in colors.iter_mut().zip(&*part) {
+                        *sum = *sum + *color * *weight;
+                    }
+                    total += weight;
+                }
+                if total != 0.0 {
+                    for sum in colors {
+                        *sum = *sum * (1.0 / total);
+                    }
+                }
+            }
+            Self::UvMapped(pigment) => pigment.store_batch(&batch.on_surface(), colors),
+            Self::Quick(_, pigment) => pigment.store_batch(batch, colors),
+        }
+    }
+
+    /// Stores the colours that a map of pigments has for these values, at places that have been moved.
+    fn store_blends<const N: usize>(
+        map: &BlendMap<Self>,
+        values: &[f64],
+        moved: &Batch<'_, N>,
+        colors: &mut [ColorFt],
+    ) {
+        let blends = values.iter().map(|value| map.lookup(*value));
+        let blends: ArrayVec<Option<Blend<'_, Self>>, N> = blends.collect();
+        let mut seconds = [ColorFt::default(); N];
+        let seconds = &mut seconds[..moved.len()];
+        colors.fill(ColorFt::default());
+        for (_, pigment) in &map.entries {
+            let is_first = |lane: &usize| match blends[*lane] {
+                Some(Blend::One(first) | Blend::Two(first, ..)) => std::ptr::eq(first, pigment),
+                None => false,
+            };
+            pigment.store_part(moved, is_first, colors);
+            let is_second = |lane: &usize| matches!(blends[*lane], Some(Blend::Two(_, second, _)) if std::ptr::eq(second, pigment));
+            pigment.store_part(moved, is_second, seconds);
+        }
+        for (lane, blend) in blends.iter().enumerate() {
+            if let Some(Blend::Two(_, _, t)) = blend {
+                colors[lane] = colors[lane].lerp(seconds[lane], *t);
+            }
+        }
+    }
+
+    /// Stores the colours at those places of a batch that `is_here` selects by their numbers.
+    fn store_part<const N: usize>(
+        &self,
+        batch: &Batch<'_, N>,
+        is_here: impl Fn(&usize) -> bool,
+        colors: &mut [ColorFt],
+    ) {
+        let lanes: ArrayVec<usize, N> = (0..batch.len()).filter(is_here).collect();
+        match &lanes[..] {
+            [] => {}
+            [lane] => colors[*lane] = self.color_moved(batch.points[*lane], batch.places[*lane]),
+            all if all.len() == batch.len() => self.store_batch(batch, colors),
+            some => {
+                let mut found = [ColorFt::default(); N];
+                self.store_batch(&batch.part(some), &mut found[..some.len()]);
+                for (lane, color) in some.iter().zip(found) {
+                    colors[*lane] = color;
+                }
+            }
+        }
     }
 
     /// The colour at the point after it has moved to a place.

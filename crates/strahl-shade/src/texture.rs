@@ -3,17 +3,18 @@
 mod paint;
 mod spaces;
 
-pub use paint::{LayerPoint, StackPoint, TexturePaint};
+pub use paint::{LAYERS, LayerPoint, StackPoint, TexturePaint};
 
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use strahl_math::{DVec3, Transform};
 
 use crate::image_map::ImageMap;
 use crate::interior::Interior;
 use crate::normal::PovNormal;
-use crate::patterns::{Modifiers, PatternField, TexturePoint};
-use crate::pigment::{Blend, BlendMap, FractalPigment, Pigment};
+use crate::patterns::{BATCH, Modifiers, PatternField, TexturePoint};
+use crate::pigment::{Blend, BlendMap, Pigment};
 use crate::pov_finish::PovFinish;
 use crate::{Color, ColorFt};
 use paint::Stack;
@@ -144,13 +145,50 @@ impl Texture {
         true
     }
 
-    /// The pigment of a texture of one layer, if a fractal selects its colours. Who knows its colour at the point of
-    /// [`Texture::layers_in`] can store it in [`TexturePaint::pigment`].
-    pub fn fractal(&self) -> Option<FractalPigment<'_>> {
-        match self {
-            Self::Plain(texture) => texture.pigment.of_fractal(),
-            _ => None,
+    /// Whether the colours of its layers at several points take less time together ([`Texture::store_colors`]).
+    pub fn gains_together(&self) -> bool {
+        let Some(layers) = self.plain_layers() else {
+            return false;
+        };
+        // A layer's normal is known when the layer is painted.
+        let mut gains = false;
+        for layer in layers {
+            if layer.pigment.sees_normals() {
+                return false;
+            }
+            gains |= layer.pigment.gains_together();
         }
+        gains
+    }
+
+    /// Calls `store` with the colours of each layer, from the lowest to the uppermost, at several points, [`BATCH`] at most: the points of
+    /// [`Texture::layers_in`]. Who puts a point's colours into [`TexturePaint::colors`] in this order spares their evaluation. Only for textures that
+    /// [gain](Texture::gains_together) by it.
+    pub fn store_colors(&self, points: &[TexturePoint], mut store: impl FnMut(&[ColorFt])) {
+        let mut colors = [ColorFt::default(); BATCH];
+        let colors = &mut colors[..points.len()];
+        for layer in self.plain_layers().into_iter().flatten() {
+            layer.pigment.store_colors(points, colors);
+            store(colors);
+        }
+    }
+
+    /// The layers of a texture that consists of nothing else, from the lowest to the uppermost, if there are not too many.
+    fn plain_layers(&self) -> Option<ArrayVec<&PlainTexture, LAYERS>> {
+        let mut plain = ArrayVec::new();
+        match self {
+            Self::Plain(texture) => plain.push(texture),
+            Self::Layered(layers) if layers.len() <= LAYERS => {
+                for layer in layers {
+                    match layer {
+                        Self::Plain(texture) => plain.push(texture),
+                        _ => return None,
+                    }
+                }
+            }
+            _ => return None,
+        }
+        Some(plain)
     }
 
     /// Whether the layers at all points are the same but for the normals, which are those of the surface: one colour, no normal of its own, no
@@ -445,7 +483,7 @@ impl PlainTexture {
         if let Some((outer, in_map)) = self.tilt(point, n, ways) {
             (normal, stack.seen) = (outer, in_map);
         }
-        let color = if let Some(color) = out.pigment.take() {
+        let color = if let Some(color) = out.colors.pop() {
             color
         } else if stack.seen == point.n_shade {
             self.pigment.color_at(point)

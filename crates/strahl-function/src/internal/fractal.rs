@@ -6,12 +6,14 @@
 use super::{Formula, Internal};
 use crate::bounds::Bounds;
 use crate::cost::Cost;
-use crate::field::{ScalarField, central_differences, step};
+use crate::field::{ScalarField, central_differences, step, store_one_by_one};
 use crate::graph::{Expr, Graph};
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_math::det;
-use strahl_math::noise::{NoiseGenerator, noise, noise_bounds, noise_of_neighbours, noise_rate};
+use strahl_math::noise::{
+    NoiseGenerator, noise, noise_bounds, noise_of_neighbours, noise_rate, store_noise,
+};
 
 pub(super) const TABLE: &[Internal] = &[
     row("f_noise3d", 0, Kind::Noise),
@@ -99,6 +101,27 @@ impl ScalarField for NoiseFunction {
             (Kind::Ridged, rest) => Octaves::new(p, rest).map_or(f64::NAN, |o| o.ridged()),
             (Kind::Generator, _) => f64::NAN,
         }
+    }
+
+    fn gains_together(&self) -> bool {
+        let is_one_noise = matches!(self.kind, Kind::Noise | Kind::Signed);
+        is_one_noise && self.generator != NoiseGenerator::Perlin
+    }
+
+    fn store_values(&self, arguments: &[&[f64]], values: &mut [f64]) {
+        let count = values.len();
+        if let (Kind::Noise | Kind::Signed, &[x, y, z]) = (self.kind, arguments)
+            && let (Some(x), Some(y), Some(z)) = (x.get(..count), y.get(..count), z.get(..count))
+        {
+            store_noise([x, y, z], self.generator, values);
+            if self.kind == Kind::Signed {
+                for value in values {
+                    *value = 2.0 * *value - 1.0;
+                }
+            }
+            return;
+        }
+        store_one_by_one(self, arguments, values);
     }
 
     fn cost(&self) -> Cost {

@@ -61,13 +61,31 @@ pub fn noise(p: DVec3, generator: NoiseGenerator) -> f64 {
     dispatch!(Simd::best(), isa => kernel::noise(isa, p, generator))
 }
 
-/// [`noise`] at four points, whose coordinates are given axis by axis, with the same bits.
-pub fn noise_of_four(points: &[[f64; 4]; 3], generator: NoiseGenerator) -> [f64; 4] {
+/// Stores [`noise`] at any number of points, whose coordinates are given axis by axis, with the same bits. The slices have the same length.
+pub fn store_noise(points: [&[f64]; 3], generator: NoiseGenerator, values: &mut [f64]) {
+    let [x, y, z] = points;
     dispatch!(Simd::best(), isa => {
-        let [x, y, z] = points;
-        let points = [isa.load(x), isa.load(y), isa.load(z)];
-        isa.store(kernel::noise_of_four(isa, points, generator))
-    })
+        for (at, four) in values.chunks_mut(4).enumerate() {
+            let from = 4 * at;
+            if four.len() == 1 || generator == NoiseGenerator::Perlin {
+                for (at, value) in four.iter_mut().enumerate() {
+                    let p = DVec3::new(x[from + at], y[from + at], z[from + at]);
+                    *value = kernel::noise(isa, p, generator);
+                }
+                continue;
+            }
+            let last = four.len() - 1;
+            // The last point takes the lanes that are left.
+            let at = [from, from + last.min(1), from + last.min(2), from + last];
+            let points = [
+                isa.load(&[x[at[0]], x[at[1]], x[at[2]], x[at[3]]]),
+                isa.load(&[y[at[0]], y[at[1]], y[at[2]], y[at[3]]]),
+                isa.load(&[z[at[0]], z[at[1]], z[at[2]], z[at[3]]]),
+            ];
+            let found = isa.store(kernel::noise_of_four(isa, points, generator));
+            four.copy_from_slice(&found[..four.len()]);
+        }
+    });
 }
 
 /// [`noise`] at eight points, whose coordinates are given four by four and axis by axis, with the same bits. Points that are all in one cell of

@@ -538,6 +538,25 @@ fn four_points_have_the_same_bits_on_all_levels() {
 }
 
 #[test]
+fn any_number_of_points_have_the_same_bits() {
+    for count in 0..12 {
+        let column = |a: f64| -> Vec<f64> {
+            let far = |k: u32| if k == 5 { 1e11 } else { 1.0 };
+            (0..count).map(|k| a * f64::from(k + 1) * far(k)).collect()
+        };
+        let [x, y, z] = [column(0.31), column(-0.77), column(1.13)];
+        for generator in [NoiseGenerator::RangeCorrected, NoiseGenerator::Perlin] {
+            let mut values = vec![0.0; count as usize];
+            store_noise([&x, &y, &z], generator, &mut values);
+            for (k, value) in values.into_iter().enumerate() {
+                let alone = noise(DVec3::new(x[k], y[k], z[k]), generator);
+                assert_eq!(value.to_bits(), alone.to_bits());
+            }
+        }
+    }
+}
+
+#[test]
 fn neighbours_have_the_noise_of_points() {
     for i in 0..4000 {
         let t = f64::from(i);

@@ -10,8 +10,10 @@ use strahl_shade::{Color, Finish};
 #[derive(Debug)]
 pub(crate) struct KnownPaints<'s> {
     known: Vec<Known<'s>>,
-    /// Whether the colours of some come from fractals.
-    pub(crate) has_fractals: bool,
+    /// Those whose colours at several points take less time together, by material and side.
+    gains: Vec<bool>,
+    /// Whether there are any.
+    pub(crate) some_gain: bool,
 }
 
 /// What is known of the layers of a material.
@@ -71,19 +73,33 @@ impl<'s> KnownPaints<'s> {
         };
         let mut known = Vec::new();
         known.resize_with(count, || Known::Unknown);
-        let mut textures = scene.materials[..count / 2]
+        let textures = scene.materials[..count / 2]
             .iter()
-            .flat_map(|material| [material.texture_seen(true), material.texture_seen(false)]);
+            .flat_map(|material| [material.texture_seen(false), material.texture_seen(true)]);
+        let gains: Vec<bool> = textures
+            .map(|texture| texture.is_some_and(|t| t.0.gains_together()))
+            .collect();
         Self {
-            has_fractals: textures.any(|t| t.is_some_and(|t| t.0.fractal().is_some())),
+            some_gain: gains.contains(&true),
+            gains,
             known,
         }
     }
 
+    /// Whether the colours of this side of a material at several points take less time together.
+    pub(crate) fn gains_together(&self, side: Side) -> bool {
+        self.gains
+            .get(Self::number(side))
+            .is_some_and(|gains| *gains)
+    }
+
+    fn number((material, outside): Side) -> usize {
+        2 * material.0 as usize + usize::from(outside)
+    }
+
     #[inline]
-    pub(super) fn of(&mut self, (material, outside): Side) -> Option<&mut Known<'s>> {
-        self.known
-            .get_mut(2 * material.0 as usize + usize::from(outside))
+    pub(super) fn of(&mut self, side: Side) -> Option<&mut Known<'s>> {
+        self.known.get_mut(Self::number(side))
     }
 }
 

@@ -8,11 +8,12 @@ use strahl_accel::PACKET;
 use strahl_geometry::{Cuboid, Plane, Sphere};
 use strahl_math::{DVec3, Ray};
 use strahl_scene::{Background, BackgroundAlpha, Camera, ObjectExt, Scene};
-use strahl_shade::patterns::{Fractal, FractalKind, Pattern};
+use strahl_shade::normal::{NormalKind, PovNormal};
+use strahl_shade::patterns::{Fractal, FractalKind, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::pov_finish::PovFinish;
 use strahl_shade::texture::{PlainTexture, Texture};
-use strahl_shade::{AreaLight, Color, Light, Material};
+use strahl_shade::{AreaLight, Color, ColorFt, Light, Material};
 
 /// A texture whose colours come from a fractal.
 fn fractal(kind: FractalKind) -> Material {
@@ -36,7 +37,42 @@ fn fractal(kind: FractalKind) -> Material {
     }))
 }
 
-/// Every kind of ray: glass in glass, mirrors that face each other, an area light, light through tinted balls; and fractals.
+/// Granite under clouds that let it through in places, and with bumps.
+fn stone() -> Material {
+    let ramp = |pattern: Pattern, low: Pigment, high: Pigment| {
+        let mut field = PatternField::from(pattern);
+        field.modifiers.turbulence = DVec3::splat(0.3);
+        Pigment::PigmentMap(
+            Box::new(field),
+            BlendMap::new(vec![(0.2, low), (0.8, high)]),
+        )
+    };
+    let gray = |value: f64| Pigment::from(ColorFt::from(Color::gray(value)));
+    let clear = Pigment::from(ColorFt::CLEAR);
+    let granite = PlainTexture {
+        pigment: ramp(Pattern::Granite, gray(0.1), gray(0.9)),
+        normal: Some(Box::new(PovNormal::new(NormalKind::Height(
+            Pattern::Bozo,
+            None,
+        )))),
+        ..PlainTexture::default()
+    };
+    let clouds = PlainTexture {
+        pigment: ramp(
+            Pattern::Bozo,
+            clear,
+            ramp(Pattern::Leopard, gray(0.3), gray(0.7)),
+        ),
+        ..PlainTexture::default()
+    };
+    Material::textured(Texture::Layered(vec![
+        Texture::Plain(granite),
+        Texture::Plain(clouds),
+    ]))
+}
+
+/// Every kind of ray: glass in glass, mirrors that face each other, an area light, light through tinted balls; and textures that are evaluated
+/// together.
 /// Without the wall behind them the balls stand in front of the background.
 fn scene(walled: bool) -> RenderScene {
     let mirror = Material::shiny(Color::gray(0.2), 0.3, 20.0).with_reflection(Color::gray(0.6));
@@ -78,6 +114,7 @@ fn scene(walled: bool) -> RenderScene {
         let material = match k {
             0 => fractal(FractalKind::Power { exponent: 2 }),
             1 => fractal(FractalKind::Power { exponent: 3 }),
+            2..=4 => stone(),
             _ => tinted.clone(),
         };
         scene = scene.add(Sphere::new(center, 0.4).material(material));

@@ -14,7 +14,7 @@
 //! A stage does with each ray what it would do with that ray alone, so the number of rays that go together changes no bit.
 
 use super::aim::Speeds;
-use super::fractals::follow_fractals;
+use super::colors::find_colors;
 use super::point::{FEW, Lanes, Point};
 use super::{FirstHit, Node, TreeTracer};
 use crate::activity::Phase;
@@ -208,7 +208,7 @@ impl<'s> TreeTracer<'s> {
         observer: &mut O,
     ) {
         let scene = self.tracer.scene;
-        follow_fractals(scene, points, lanes, &self.paints);
+        find_colors(scene, points, lanes, &self.paints);
         lanes.retain(|lane| {
             let point = &mut points[*lane];
             self.tracer.slot.enter_for(Phase::Texture, point.hit.id);

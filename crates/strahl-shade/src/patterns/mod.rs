@@ -7,9 +7,9 @@
 //! by turbulence; the pattern's formula gives a raw value; [`Modifiers::shape`] repeats it by frequency and phase and
 //! bends it by a wave form. Block patterns (checker, brick, ...) give the number of a cell instead.
 
+mod batch;
 mod blocks;
 mod crackle;
-mod four;
 mod fractal;
 mod modifiers;
 mod noisy;
@@ -24,6 +24,8 @@ use std::sync::Arc;
 use strahl_function::{Cost, ScalarField};
 use strahl_math::{DVec2, DVec3};
 
+pub use batch::BATCH;
+pub(crate) use batch::Batch;
 pub use crackle::{Crackle, CrackleMetric};
 pub use fractal::{Exterior, Fractal, FractalKind, Interior as FractalInterior};
 pub use modifiers::{Modifiers, Wave};
@@ -380,24 +382,6 @@ impl PatternField {
         field.moved(self.modifiers.warped(position))
     }
 
-    /// The fractal, if the pattern is one.
-    pub(crate) fn fractal(&self) -> Option<&Fractal> {
-        match &self.pattern {
-            Pattern::Fractal(fractal) => Some(fractal),
-            _ => None,
-        }
-    }
-
-    /// The value of the field where its pattern has a raw value, which frequency, phase and wave have not changed yet.
-    pub(crate) fn value_of_raw(&self, raw: f64) -> f64 {
-        self.as_ref().value_of_raw(raw)
-    }
-
-    /// The values at four places to which [`PatternField::moved`] has led.
-    pub(crate) fn values_moved(&self, places: &[DVec3; 4], point: &TexturePoint) -> [f64; 4] {
-        self.as_ref().values_moved(places, point)
-    }
-
     fn as_ref(&self) -> FieldRef<'_> {
         FieldRef {
             pattern: &self.pattern,
@@ -419,13 +403,7 @@ impl FieldRef<'_> {
         self.value_of_raw(self.pattern.raw(p, point, self.modifiers))
     }
 
-    /// The values at four places to which warps and turbulence have led already.
-    pub(crate) fn values_moved(&self, places: &[DVec3; 4], point: &TexturePoint) -> [f64; 4] {
-        let raw = self.pattern.raw_of_four(places, point, self.modifiers);
-        raw.map(|raw| self.value_of_raw(raw))
-    }
-
-    /// See [`PatternField::value_of_raw`].
+    /// The value where the pattern has a raw value, which frequency, phase and wave have not changed yet.
     fn value_of_raw(&self, raw: f64) -> f64 {
         let wave = self.modifiers.wave;
         let wave = wave.unwrap_or_else(|| self.pattern.default_wave());

@@ -2,6 +2,7 @@
 
 use crate::pov_finish::{FilmPoint, IridSettings, PovFinish};
 use crate::{Color, ColorFt, Quality};
+use arrayvec::ArrayVec;
 use std::sync::LazyLock;
 use strahl_math::DVec3;
 
@@ -12,6 +13,9 @@ static UNLIT: LazyLock<PovFinish> = LazyLock::new(|| PovFinish {
     diffuse: 0.0,
     ..PovFinish::default()
 });
+
+/// The most layers of a texture whose colours may be known before the layers are evaluated.
+pub const LAYERS: usize = 4;
 
 /// One layer of a texture at a point, with all properties that only depend on the surface.
 ///
@@ -86,9 +90,9 @@ pub struct TexturePaint<'a> {
     /// Nothing passes layers whose transmittance together has a grey value, without its sign, below this: what is behind, lower layers too, stays unseen
     /// (measured). Set by the owner.
     pub bailout: f64,
-    /// The colour at the next point of a pigment that is a [fractal](crate::texture::Texture::fractal), if it is known already. Set by the
-    /// owner before each point.
-    pub pigment: Option<ColorFt>,
+    /// The colours of the layers at the next point, from the lowest to the uppermost, if they are
+    /// [known](crate::texture::Texture::store_colors) already. Set by the owner before each point.
+    pub colors: ArrayVec<ColorFt, LAYERS>,
 }
 
 impl TexturePaint<'_> {
