@@ -3,8 +3,10 @@
 use crate::arguments::Arguments;
 use crate::compare_pov::picture;
 use crate::convert;
+use crate::spd::KINDS;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
@@ -15,23 +17,22 @@ const SPD: [&str; 4] = ["--max-depth", "5", "--adc-bailout", "0"];
 /// Trace times of the SPD scenes at 512x512, no antialiasing, equal depth, against POV-Ray and Tachyon.
 pub(crate) fn spd(args: &[&str]) -> Result<()> {
     let (mut folder, mut runs, mut threads) = (PathBuf::from("../shared/data/spd"), 5, 1);
+    let mut only: Vec<&str> = vec![];
     let mut args = Arguments::new(args);
     while let Some(option) = args.option() {
         match option {
             "--runs" => runs = args.number()?,
             "--threads" => threads = args.number()?,
+            "--only" => only = args.value()?.split(',').collect(),
+            other if other.starts_with('-') => bail!("unknown option {other}"),
             other => folder = PathBuf::from(other),
         }
     }
     if runs == 0 || threads == 0 {
         bail!("--runs and --threads must be at least 1");
     }
-    let mut scenes: Vec<PathBuf> = std::fs::read_dir(&folder)
-        .with_context(|| format!("cannot read {}", folder.display()))?
-        .filter_map(|entry| entry.ok().map(|e| e.path()))
-        .filter(|path| path.to_string_lossy().ends_with(".nff.gz"))
-        .collect();
-    scenes.sort();
+    let generated = tempfile::tempdir()?;
+    let scenes = spd_scenes(&folder, &only, generated.path())?;
     build_strahl()?;
     println!(
         "Trace time in seconds, {threads} thread(s), medians of {runs}; how many times as fast strahl is."
@@ -50,6 +51,41 @@ pub(crate) fn spd(args: &[&str]) -> Result<()> {
         geometric_mean(&tachyon)
     );
     Ok(())
+}
+
+/// The chosen scenes (all, if `only` is empty) by name: those of the folder, and those that it lacks and that can be generated.
+fn spd_scenes(folder: &Path, only: &[&str], generated: &Path) -> Result<Vec<PathBuf>> {
+    let chosen = |name: &str| only.is_empty() || only.contains(&name);
+    let mut scenes = BTreeMap::new();
+    let entries = std::fs::read_dir(folder);
+    let can_generate = |name: &&str| KINDS.iter().any(|kind| kind.name == *name);
+    // Without a folder there is something to do if only generated scenes are wanted.
+    if entries.is_ok() || only.is_empty() || !only.iter().all(can_generate) {
+        for entry in entries.with_context(|| format!("cannot read {}", folder.display()))? {
+            let path = entry?.path();
+            if let Some(name) = spd_name(&path).filter(|name| chosen(name)) {
+                scenes.insert(name, path);
+            }
+        }
+    }
+    for kind in KINDS {
+        if chosen(kind.name) && !scenes.contains_key(kind.name) {
+            scenes.insert(kind.name.to_owned(), kind.write_usual(generated)?);
+        }
+    }
+    if let Some(missing) = only.iter().find(|name| !scenes.contains_key(**name)) {
+        bail!(
+            "there is no scene `{missing}`: {} has no {missing}.nff.gz, and it can't be generated",
+            folder.display()
+        );
+    }
+    Ok(scenes.into_values().collect())
+}
+
+/// The name of a scene, if the file is one.
+fn spd_name(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?;
+    name.strip_suffix(".nff.gz").map(str::to_owned)
 }
 
 /// The geometric mean, formatted for a table.
@@ -94,10 +130,7 @@ fn one_scene(scene: &Path, runs: usize, threads: u32) -> Result<Faster> {
         povray: faster(&povray),
         tachyon: faster(&tachyon),
     };
-    let name = scene
-        .file_name()
-        .map(|n| n.to_string_lossy().replace(".nff.gz", ""))
-        .unwrap_or_default();
+    let name = spd_name(scene).unwrap_or_default();
     let ours = median(&mut ours);
     let peer = |times: &mut [f64], faster: Option<f64>| match faster {
         Some(faster) => format!("{:.3} | {faster:.2}", median(times)),
@@ -251,4 +284,36 @@ fn seconds_in(log: &[u8], words: &str, before: char) -> Result<f64> {
         .and_then(|line| line.rsplit_once(before))
         .and_then(|(_, s)| s.split_whitespace().next()?.parse().ok());
     seconds.with_context(|| format!("no line begins with `{words}` in:\n{log}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{spd_name, spd_scenes};
+    use std::path::Path;
+
+    #[test]
+    fn scenes_of_the_folder_come_before_generated_ones() {
+        let [folder, generated] = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+        for name in ["balls.nff.gz", "tree.nff.gz", "README.md", "plain.nff"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let scenes = |folder: &Path, only: &[&str]| spd_scenes(folder, only, generated.path());
+        let found = scenes(folder.path(), &[]).unwrap();
+        let names: Vec<String> = found.iter().filter_map(|path| spd_name(path)).collect();
+        assert_eq!(names, ["balls", "lattice", "rings", "tree"]);
+        let own: Vec<bool> = found.iter().map(|p| p.starts_with(&folder)).collect();
+        assert_eq!(own, [true, false, false, true]);
+
+        let found = scenes(folder.path(), &["tree", "balls"]).unwrap();
+        assert_eq!(found.len(), 2);
+        let error = scenes(folder.path(), &["balls", "cube"]).unwrap_err();
+        assert!(error.to_string().contains("no scene `cube`"), "{error}");
+
+        let missing = folder.path().join("missing");
+        assert_eq!(scenes(&missing, &["rings"]).unwrap().len(), 1);
+        for only in [&[][..], &["rings", "balls"]] {
+            let error = scenes(&missing, only).unwrap_err().to_string();
+            assert!(error.contains("cannot read"), "{error}");
+        }
+    }
 }

@@ -19,19 +19,22 @@ mod facets;
 mod gallery;
 mod lab;
 mod looks;
+mod nff;
 mod parallel;
 mod peers;
 #[path = "../../crates/strahl-sdl/tests/common/plates.rs"]
 mod plates;
 mod profiled;
 mod record;
+mod spd;
 
 use anyhow::{Result, bail};
 use std::path::Path;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
-  bench spd [FOLDER] [--runs N] [--threads N]
-                                  trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray and Tachyon
+  bench spd [FOLDER] [--runs N] [--threads N] [--only NAME,...]
+                                  trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray and Tachyon;
+                                  rings, tree and lattice are generated if FOLDER lacks them
   bench csg [--runs N] [--threads N] [--only PART]
                                   trace times of generated CSG scenes against POV-Ray
   bench objects [--runs N] [--size 640x480] [--only PART]
@@ -66,7 +69,9 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   nff2pov SCENE OUTPUT.pov        converts a scene for POV-Ray, such that both programs do the same work
   nff2dat SCENE OUTPUT.dat        converts a scene for Tachyon, which does not refract
   record [--out FILE]             renders scenes of ours with a build that counts, and writes the profile that
-                                  scripts/install compiles the program with";
+                                  scripts/install compiles the program with
+  spd rings|tree|lattice SIZE -o FILE.nff[.gz]
+                                  writes a scene in the spirit of SPD; bench spd takes rings 7, tree 11 and lattice 12";
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -94,6 +99,7 @@ fn main() -> Result<()> {
         ["nff2pov", scene, output] => convert::to_pov(Path::new(scene), Path::new(output)),
         ["nff2dat", scene, output] => convert::to_dat(Path::new(scene), Path::new(output)),
         ["record", rest @ ..] => record::run(rest),
+        ["spd", rest @ ..] => spd::run(rest),
         _ => bail!("{USAGE}"),
     }
 }

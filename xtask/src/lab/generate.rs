@@ -1,9 +1,12 @@
 //! Scenes of any size, in the Neutral File Format.
 
+use crate::nff::Scene;
 use anyhow::{Context, Result, bail};
 use std::f64::consts::TAU;
-use std::fmt::Write;
 use strahl::math::DVec3;
+
+/// The sky of all scenes.
+const BACKGROUND: &str = "0.08 0.36 0.57";
 
 /// Writes a scene: `sphereflake LEVELS`, `tetra LEVELS`, `crystal SIDE` or `stadium`.
 pub(crate) fn generate(what: &str, size: Option<&str>) -> Result<String> {
@@ -19,14 +22,14 @@ pub(crate) fn generate(what: &str, size: Option<&str>) -> Result<String> {
     let mut scene = Scene::default();
     match what {
         "sphereflake" => {
-            scene.view([2.1, 1.3, 1.7], [0.0, 0.0, 0.0], 45.0);
+            scene.view(BACKGROUND, [2.1, 1.3, 1.7], [0.0, 0.0, 0.0], 45.0);
             scene.lights(&[[4.0, 3.0, 2.0], [1.0, -4.0, 4.0], [-3.0, 1.0, 5.0]]);
             scene.ground(12.0, -0.5);
             scene.fill("1 0.9 0.7 0.5 0.5 3 0 0");
             scene.flake(DVec3::ZERO, 0.5, DVec3::Z, levels()?);
         }
         "tetra" => {
-            scene.view([1.0, -4.0, 1.8], [0.0, 0.0, 0.0], 40.0);
+            scene.view(BACKGROUND, [1.0, -4.0, 1.8], [0.0, 0.0, 0.0], 40.0);
             scene.lights(&[[2.0, -4.0, 6.0]]);
             scene.fill("1 0.2 0.2 1 0 0 0 0");
             let corners = [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]];
@@ -36,13 +39,18 @@ pub(crate) fn generate(what: &str, size: Option<&str>) -> Result<String> {
         "crystal" => {
             let side = size_up_to(400)?;
             let extent = f64::from(side);
-            scene.view([1.9, 1.3, 1.1].map(|x| x * extent), [0.0, 0.0, 0.0], 40.0);
+            scene.view(
+                BACKGROUND,
+                [1.9, 1.3, 1.1].map(|x| x * extent),
+                [0.0, 0.0, 0.0],
+                40.0,
+            );
             scene.lights(&[[3.0, -1.0, 4.0].map(|x| x * extent)]);
             scene.fill("0.9 0.7 0.4 0.8 0 0 0 0");
             scene.crystal(side);
         }
         "stadium" => {
-            scene.view([0.0, -3.2, 1.4], [0.0, 0.0, 0.5], 40.0);
+            scene.view(BACKGROUND, [0.0, -3.2, 1.4], [0.0, 0.0, 0.5], 40.0);
             scene.lights(&[[30.0, -80.0, 120.0], [-90.0, 20.0, 60.0]]);
             scene.fill("0.35 0.6 0.3 1 0 0 0 0");
             scene.ground(60.0, 0.0);
@@ -55,42 +63,20 @@ pub(crate) fn generate(what: &str, size: Option<&str>) -> Result<String> {
             bail!("unknown scene `{other}`; known ones are sphereflake, tetra, crystal, stadium")
         }
     }
-    Ok(scene.0)
+    Ok(scene.into_text())
 }
 
-#[derive(Default)]
-struct Scene(String);
-
 impl Scene {
-    fn view(&mut self, from: [f64; 3], at: [f64; 3], angle: f64) {
-        self.line("b 0.08 0.36 0.57\nv");
-        self.point("from ", DVec3::from(from));
-        self.point("at ", DVec3::from(at));
-        self.line("up 0 0 1");
-        self.line(&format!("angle {angle}\nhither 0.01\nresolution 512 512"));
-    }
-
-    fn lights(&mut self, places: &[[f64; 3]]) {
-        for place in places {
-            self.point("l ", DVec3::from(*place));
-        }
-    }
-
-    fn fill(&mut self, numbers: &str) {
-        self.line(&format!("f {numbers}"));
-    }
-
     fn ground(&mut self, half: f64, z: f64) {
-        if !self.0.contains("\nf ") {
+        if !self.has_fill() {
             self.fill("1 0.75 0.33 0.8 0 0 0 0");
         }
-        let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
-        self.polygon(&corners.map(|(x, y)| DVec3::new(x * half, y * half, z)));
+        self.square(half, z);
     }
 
     /// A sphere that carries nine spheres of a third of its size, six around its equator and three above, and so on.
     fn flake(&mut self, center: DVec3, radius: f64, up: DVec3, levels: u32) {
-        self.point_and("s ", center, radius);
+        self.sphere(center, radius);
         if levels == 0 {
             return;
         }
@@ -128,7 +114,7 @@ impl Scene {
         for x in 0..side {
             for y in 0..side {
                 for z in 0..side {
-                    self.point_and("s ", DVec3::new(along(x), along(y), along(z)), 0.35);
+                    self.sphere(DVec3::new(along(x), along(y), along(z)), 0.35);
                 }
             }
         }
@@ -195,26 +181,6 @@ impl Scene {
                 self.polygon(&[a, c, d]);
             }
         }
-    }
-
-    fn polygon(&mut self, corners: &[DVec3]) {
-        self.line(&format!("p {}", corners.len()));
-        for corner in corners {
-            self.point("", *corner);
-        }
-    }
-
-    fn point(&mut self, word: &str, p: DVec3) {
-        self.line(&format!("{word}{} {} {}", p.x, p.y, p.z));
-    }
-
-    fn point_and(&mut self, word: &str, p: DVec3, number: f64) {
-        self.line(&format!("{word}{} {} {} {number}", p.x, p.y, p.z));
-    }
-
-    fn line(&mut self, text: &str) {
-        // Writing to a string never fails.
-        let _ = writeln!(self.0, "{text}");
     }
 }
 
