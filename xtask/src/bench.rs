@@ -37,8 +37,10 @@ pub(crate) fn spd(args: &[&str]) -> Result<()> {
     println!(
         "Trace time in seconds, {threads} thread(s), medians of {runs}; how many times as fast strahl is."
     );
-    println!("| scene | strahl | Mrays/s | POV-Ray | faster by | Tachyon | faster by |");
-    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| scene | strahl | Mrays/s | POV-Ray | faster by | pictures differ by | Tachyon | faster by |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     let (mut povray, mut tachyon) = (vec![], vec![]);
     for scene in &scenes {
         let row = one_scene(scene, runs, threads)?;
@@ -46,7 +48,7 @@ pub(crate) fn spd(args: &[&str]) -> Result<()> {
         tachyon.extend(row.tachyon);
     }
     println!(
-        "| geometric mean | | | | {} | | {} |",
+        "| geometric mean | | | | {} | | | {} |",
         geometric_mean(&povray),
         geometric_mean(&tachyon)
     );
@@ -113,11 +115,12 @@ fn one_scene(scene: &Path, runs: usize, threads: u32) -> Result<Faster> {
     convert::to_pov(scene, &pov)?;
     let has_dat = convert::to_dat(scene, &dat).is_ok();
     let (mut ours, mut povray, mut tachyon, mut rays) = (vec![], vec![], vec![], 0.0);
+    let pictures = ["out.png", "pov.png"].map(|name| folder.path().join(name));
     for _ in 0..runs {
-        let (time, count) = run_strahl(scene, &folder.path().join("out.png"), threads, &SPD)?;
+        let (time, count) = run_strahl(scene, &pictures[0], threads, &SPD)?;
         ours.push(time);
         rays = count;
-        povray.push(run_povray(&pov, &folder.path().join("pov.png"), threads)?);
+        povray.push(run_povray(&pov, &pictures[1], threads)?);
         if has_dat {
             tachyon.push(run_tachyon(&dat, folder.path(), threads)?);
         }
@@ -131,13 +134,14 @@ fn one_scene(scene: &Path, runs: usize, threads: u32) -> Result<Faster> {
         tachyon: faster(&tachyon),
     };
     let name = spd_name(scene).unwrap_or_default();
+    let difference = difference(&name, [&pictures[0], &pictures[1]], f64::INFINITY)?;
     let ours = median(&mut ours);
     let peer = |times: &mut [f64], faster: Option<f64>| match faster {
         Some(faster) => format!("{:.3} | {faster:.2}", median(times)),
         None => "- | -".to_owned(),
     };
     println!(
-        "| {name} | {ours:.3} | {:.2} | {} | {} |",
+        "| {name} | {ours:.3} | {:.2} | {} | {difference:.3} | {} |",
         rays / ours / 1e6,
         peer(&mut povray, faster.povray),
         peer(&mut tachyon, faster.tachyon),

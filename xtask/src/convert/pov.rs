@@ -10,10 +10,10 @@ use strahl::shade::{Color, LightKind, Material};
 
 pub(super) fn to_pov(scene: &Scene) -> Result<String> {
     let mut out = String::new();
-    // POV-Ray's level 4 is the Standard Procedural Databases' depth 5.
+    // The Standard Procedural Databases' depth 5. POV-Ray counts the rays of the next level as well, but does not trace them.
     writeln!(
         out,
-        "#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level 4 adc_bailout 0 ambient_light 1 }}"
+        "#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level 5 adc_bailout 0 ambient_light 1 }}"
     )?;
     let camera = scene.camera.as_ref().context("the scene has no camera")?;
     write_camera(&mut out, camera)?;
