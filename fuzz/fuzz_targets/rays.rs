@@ -7,7 +7,7 @@ use libfuzzer_sys::fuzz_target;
 use strahl::accel::AcceleratorKind;
 use strahl::math::{Interval, Ray};
 use strahl::prelude::*;
-use strahl::tracing::{Hit, PACKET, Prepared, RayClass, Tracer};
+use strahl::tracing::{Hit, PACKET, Prepared, RayClass, Intersector};
 
 /// Makes choices from the input bytes; zeros when they are used up.
 struct Choices<'d>(&'d [u8]);
@@ -190,7 +190,7 @@ fuzz_target!(|data: &[u8]| {
     let mut film: Option<(Film, u64)> = None;
     for kind in kinds() {
         let scene = prepared.clone().build(kind);
-        let mut tracer = Tracer::new(&scene);
+        let mut tracer = Intersector::new(&scene);
         let class = RayClass::Camera;
         let closest = rays
             .iter()

@@ -86,7 +86,7 @@ impl Coverage {
     }
 
     /// The same for a ray that hits nothing. Returns the light along it.
-    pub(crate) fn enter_nothing(&mut self, direction: DVec3) -> Color {
+    pub(crate) fn enter_miss(&mut self, direction: DVec3) -> Color {
         let (seen, clear) = self.beyond(direction);
         self.nodes.push(clear);
         seen

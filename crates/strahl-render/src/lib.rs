@@ -14,6 +14,7 @@
 mod activity;
 mod area;
 mod attenuation;
+mod beam;
 mod blocks;
 mod branch;
 mod camera;
@@ -46,7 +47,6 @@ mod scene;
 mod searcher;
 mod session;
 mod shadow;
-mod sight;
 mod sink;
 mod spheres;
 mod surface;
@@ -74,7 +74,7 @@ pub use observer::{
 };
 pub use profile::{Part as ProfilePart, Profile, ProfileReport};
 pub use queries::{HitInfo, HitSurface};
-pub use query::{Tracer, WalkEvent};
+pub use query::{Intersector, WalkEvent};
 pub use render::{PixelState, Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Refinement, Sampling, UnknownSampling};
 pub use scene::{RenderScene, SceneStats};

@@ -84,7 +84,7 @@ impl Prim {
 
     /// The shape that it is, if all its hits count for whoever wants the primitive: they need no checks one by one.
     #[inline(always)]
-    pub(crate) const fn plain_shape(&self) -> Option<u32> {
+    pub(crate) const fn unfiltered_shape(&self) -> Option<u32> {
         match self.tag {
             PrimTag::Shape | PrimTag::Placed if self.flags & Self::CHECKED == 0 => Some(self.index),
             _ => None,

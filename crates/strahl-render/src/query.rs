@@ -2,8 +2,8 @@ mod block;
 mod kinds;
 mod leaves;
 mod packet;
-mod plain;
 mod shapes;
+mod unfiltered;
 mod visitor;
 
 use crate::activity::{Phase, Slot};
@@ -12,16 +12,16 @@ use crate::scene::{RenderGroup, RenderScene};
 use crate::uses::InstanceUse;
 pub use kinds::WalkEvent;
 use kinds::{Any, Closest, Query, Transmitting, Watched};
-use plain::Plain;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator, TraversalStats, Visitor};
 use strahl_geometry::{PacketTree, RayShear, Scratch};
 use strahl_math::{Interval, Ray};
+use unfiltered::Unfiltered;
 use visitor::GroupVisitor;
 
 /// Finds the intersections of rays with a scene; owns the working memory of one thread.
 #[derive(Debug)]
-pub struct Tracer<'s> {
+pub struct Intersector<'s> {
     pub(crate) scene: &'s RenderScene,
     pub(crate) scratch: Scratch,
     /// What a packet meets of a CSG tree.
@@ -39,7 +39,7 @@ pub struct Tracer<'s> {
 /// No primitive.
 const NONE: u32 = u32::MAX;
 
-impl<'s> Tracer<'s> {
+impl<'s> Intersector<'s> {
     /// For one scene and one thread.
     pub fn new(scene: &'s RenderScene) -> Self {
         Self {
@@ -67,7 +67,7 @@ impl<'s> Tracer<'s> {
         query
     }
 
-    /// [`Tracer::closest_hit`], reporting every step of the traversal.
+    /// [`Intersector::closest_hit`], reporting every step of the traversal.
     pub(crate) fn watched_hit(
         &mut self,
         ray: &Ray,
@@ -109,7 +109,7 @@ impl<'s> Tracer<'s> {
         query.found.is_some()
     }
 
-    /// [`Tracer::any_opaque`] for a ray to a light, testing the last occluder of that light first: the answer is the same,
+    /// [`Intersector::any_opaque`] for a ray to a light, testing the last occluder of that light first: the answer is the same,
     /// found sooner.
     #[inline]
     pub(crate) fn occluded(
@@ -251,17 +251,17 @@ impl<Q: Query> Search<'_, '_, Q> {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),
         };
-        let plain = group.common.is_some_and(|(visible, flags)| {
-            visible & self.class != 0 && self.query.is_plain(flags)
+        let unfiltered = group.common.is_some_and(|(visible, flags)| {
+            visible & self.class != 0 && self.query.is_unfiltered(flags)
         });
         let mut alone = None;
         if Q::HAS_FAST_SEARCH
-            && plain
+            && unfiltered
             && let AnyAccelerator::Bvh8(bvh) = accelerator
             && let Some(blocks) = blocks.of_one_kind()
             && bvh.has_leaves_only()
         {
-            let searched = Plain {
+            let searched = Unfiltered {
                 bvh,
                 blocks,
                 first_ids: group.first_ids.as_ref(),
@@ -290,7 +290,7 @@ impl<Q: Query> Search<'_, '_, Q> {
             from_prim,
             base,
             t_max: range.max,
-            plain,
+            unfiltered,
         };
         if first != NONE {
             stats.primitive_tests += 1;

@@ -1,7 +1,7 @@
 //! Questions about rays, on one thread.
 
 use crate::hit::{Hit, RayClass};
-use crate::query::Tracer;
+use crate::query::Intersector;
 use crate::scene::RenderScene;
 use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
@@ -13,7 +13,7 @@ use strahl_math::{Interval, Ray};
 /// [`Session::occluded`]: crate::Session::occluded
 #[derive(Debug)]
 pub struct Searcher<'s> {
-    tracer: Tracer<'s>,
+    intersector: Intersector<'s>,
     /// How far apart the origins of rays that are alike may be.
     reach: f64,
 }
@@ -22,7 +22,7 @@ impl RenderScene {
     /// What answers questions about rays on one thread.
     pub fn searcher(&self) -> Searcher<'_> {
         Searcher {
-            tracer: Tracer::new(self),
+            intersector: Intersector::new(self),
             reach: NEAR * self.diagonal(),
         }
     }
@@ -41,12 +41,14 @@ impl Searcher<'_> {
             if are_alike(rays, self.reach) {
                 let mut found = [None; PACKET];
                 let (from, class) = ([None; PACKET], RayClass::Camera);
-                self.tracer
+                self.intersector
                     .closest_hits(rays, range, &from, class, &mut found);
                 hits.copy_from_slice(&found[..hits.len()]);
             } else {
                 for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = self.tracer.closest_hit(ray, range, None, RayClass::Camera);
+                    *hit = self
+                        .intersector
+                        .closest_hit(ray, range, None, RayClass::Camera);
                 }
             }
         }
@@ -62,13 +64,13 @@ impl Searcher<'_> {
         assert_eq!(rays.len(), answers.len(), "one answer for each ray");
         for (rays, answers) in rays.chunks(PACKET).zip(answers.chunks_mut(PACKET)) {
             if are_alike(rays, self.reach) {
-                let bits = self.tracer.any_opaques(rays, range, &[None; PACKET]);
+                let bits = self.intersector.any_opaques(rays, range, &[None; PACKET]);
                 for (lane, answer) in answers.iter_mut().enumerate() {
                     *answer = bits >> lane & 1 == 1;
                 }
             } else {
                 for (ray, answer) in rays.iter().zip(answers) {
-                    *answer = self.tracer.any_opaque(ray, range, None);
+                    *answer = self.intersector.any_opaque(ray, range, None);
                 }
             }
         }

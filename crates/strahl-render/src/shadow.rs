@@ -3,7 +3,7 @@ mod report;
 use crate::activity::Phase;
 use crate::hit::{Hit, Origin};
 use crate::media::{Crossing, MediaArena, MediaStack};
-use crate::query::Tracer;
+use crate::query::Intersector;
 use crate::resolve::{Resolved, Uv};
 use crate::uses::InstanceUse;
 use strahl_math::{Interval, Ray};
@@ -59,7 +59,7 @@ pub(crate) struct ShadowRay<'r> {
     pub(crate) media: MediaStack,
 }
 
-impl Tracer<'_> {
+impl Intersector<'_> {
     /// Traces a shadow ray: without any hit all light arrives, behind an opaque surface none; transparent surfaces filter it by
     /// their kt and their insides by Beer-Lambert. Light that is projected through a mask starts at the mask.
     ///

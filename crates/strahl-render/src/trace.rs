@@ -23,7 +23,7 @@ mod eye;
 mod gather;
 mod lights;
 mod medium;
-mod nothing;
+mod miss;
 mod path;
 mod point;
 mod settings;
@@ -48,7 +48,7 @@ use crate::hit::Hit;
 use crate::layers::{KnownPaints, Mirror, Passage};
 use crate::media::{MediaArena, MediaStack};
 use crate::observer::{RayKind, TraceObserver};
-use crate::query::Tracer;
+use crate::query::Intersector;
 use crate::resolve::Uv;
 use crate::sampling::Sample;
 use crate::scene::RenderScene;
@@ -64,7 +64,7 @@ use strahl_shade::{Color, ShadingModel};
 #[derive(Debug)]
 pub struct TreeTracer<'s> {
     /// The queries.
-    pub tracer: Tracer<'s>,
+    pub intersector: Intersector<'s>,
     /// Rays traced so far.
     pub counts: RayCounts,
     pub(crate) settings: TraceSettings,
@@ -121,12 +121,12 @@ impl<'s> TreeTracer<'s> {
         let uv_shown = shown(settings.force_shading)
             || shown(Some(settings.shading))
             || scene.materials.iter().any(|m| shown(m.model));
-        let mut tracer = Tracer::new(scene);
-        tracer.remembers = settings.shadow_cache;
+        let mut intersector = Intersector::new(scene);
+        intersector.remembers = settings.shadow_cache;
         Self {
-            tracer,
+            intersector,
             coverage: None,
-            beyond: nothing::common(scene).map(Sample::from),
+            beyond: miss::uniform_background(scene).map(Sample::from),
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,
@@ -167,8 +167,8 @@ impl<'s> TreeTracer<'s> {
         self.keeps_first = true;
         self.put(0, primary, 0, eye);
         self.grow(1, 1, observer);
-        self.tracer.slot.ray(RayKind::Primary);
-        self.tracer.slot.enter(Phase::Sampling);
+        self.intersector.slot.ray(RayKind::Primary);
+        self.intersector.slot.enter(Phase::Sampling);
         self.combine(observer);
         let nodes = (self.nodes.len() as u64).max(1);
         SampleResult {
@@ -187,7 +187,7 @@ impl<'s> TreeTracer<'s> {
         let Some(first) = traced.next().filter(|_| self.have_one_eye(rays)) else {
             return self.trace_each(rays);
         };
-        let (counts, stats) = (self.counts, self.tracer.stats);
+        let (counts, stats) = (self.counts, self.intersector.stats);
         let eye = self.eye_media(first.origin);
         self.begin();
         let mut count = 0;
@@ -198,11 +198,11 @@ impl<'s> TreeTracer<'s> {
             }
         }
         if !self.grow(count, PACKET, &mut ()) {
-            (self.counts, self.tracer.stats) = (counts, stats);
+            (self.counts, self.intersector.stats) = (counts, stats);
             return self.trace_each(rays);
         }
-        self.tracer.slot.ray(RayKind::Primary);
-        self.tracer.slot.enter(Phase::Sampling);
+        self.intersector.slot.ray(RayKind::Primary);
+        self.intersector.slot.enter(Phase::Sampling);
         self.combine(&mut ());
         &self.roots[..rays.len()]
     }
@@ -223,7 +223,7 @@ impl<'s> TreeTracer<'s> {
     fn have_one_eye(&mut self, rays: &[Option<Ray>]) -> bool {
         let mut origins = rays.iter().flatten().map(|ray| ray.origin);
         let first = origins.clone().next();
-        !self.tracer.scene.fills
+        !self.intersector.scene.fills
             || origins.clone().all(|origin| Some(origin) == first)
             || origins.all(|origin| self.eye_media(origin) == MediaStack::VACUUM)
     }
@@ -231,7 +231,7 @@ impl<'s> TreeTracer<'s> {
     /// The media of a tree from this place: all other stacks are forgotten.
     #[inline]
     pub(super) fn eye_media(&mut self, place: DVec3) -> MediaStack {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         if scene.fills
             && let Some(media) = self.eye.moved_to(scene, place)
         {
@@ -310,13 +310,13 @@ impl<'s> TreeTracer<'s> {
 
     /// Whether what lies in front of hits may add light.
     fn adds_light_on_the_way(&self) -> bool {
-        self.tracer.scene.has_air() || self.transport.medium.is_some()
+        self.intersector.scene.has_air() || self.transport.medium.is_some()
     }
 
     /// The attenuation by what lies in front of a hit, and the light that it adds.
     #[inline(always)]
     fn in_front(&mut self, branch: &Branch, length: f64) -> (Color, Color) {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         let mut attenuation = scene.absorbed(self.media.top(branch.media), length);
         let mut fog = Color::BLACK;
         if scene.has_air() && self.media.in_air(branch.media) {
@@ -335,7 +335,7 @@ impl<'s> TreeTracer<'s> {
     }
 
     fn model_of(&self, surface: &Surface<'_>) -> ShadingModel {
-        let material = &self.tracer.scene.materials[surface.resolved.look.material.0 as usize];
+        let material = &self.intersector.scene.materials[surface.resolved.look.material.0 as usize];
         self.settings
             .force_shading
             .or(material.model)

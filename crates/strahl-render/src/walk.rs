@@ -1,5 +1,5 @@
 use crate::hit::{Hit, RayClass};
-use crate::query::{Tracer, WalkEvent};
+use crate::query::{Intersector, WalkEvent};
 use crate::scene::RenderScene;
 use strahl_accel::TraversalStats;
 use strahl_math::{Interval, Ray};
@@ -17,12 +17,12 @@ pub struct RayWalk {
 
 /// Searches the closest hit of a camera ray and records every node, cell and test on the way.
 pub fn walk(scene: &RenderScene, ray: &Ray) -> RayWalk {
-    let mut tracer = Tracer::new(scene);
+    let mut intersector = Intersector::new(scene);
     let mut events = Vec::new();
-    let hit = tracer.watched_hit(ray, Interval::FORWARD, RayClass::Camera, &mut events);
+    let hit = intersector.watched_hit(ray, Interval::FORWARD, RayClass::Camera, &mut events);
     RayWalk {
         events,
         hit,
-        stats: tracer.stats,
+        stats: intersector.stats,
     }
 }

@@ -4,7 +4,9 @@ mod common;
 
 use common::{compiled, glass_and_mirrors, rendered};
 use strahl_math::Interval;
-use strahl_render::{BranchEnd, RayKind, Refinement, RenderOptions, Sampling, Tracer, explain};
+use strahl_render::{
+    BranchEnd, Intersector, RayKind, Refinement, RenderOptions, Sampling, explain,
+};
 use strahl_shade::Color;
 
 #[test]
@@ -162,7 +164,7 @@ fn shadow_rays_tell_what_is_in_their_way() {
                 && last.blocks
             {
                 assert_eq!(shadow.met.len(), 1);
-                let mut tracer = Tracer::new(&scene);
+                let mut tracer = Intersector::new(&scene);
                 let before = Interval::new(0.0, last.t * (1.0 - 1e-9));
                 assert!(!tracer.any_opaque(&shadow.ray, before, None));
                 let beyond = Interval::new(last.t * (1.0 - 1e-9), last.t * (1.0 + 1e-9));

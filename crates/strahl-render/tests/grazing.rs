@@ -4,7 +4,7 @@
 use strahl_accel::AcceleratorKind;
 use strahl_geometry::Sphere;
 use strahl_math::{DVec3, Interval, Ray};
-use strahl_render::{Origin, Prepared, RayClass, RenderScene, Tracer};
+use strahl_render::{Intersector, Origin, Prepared, RayClass, RenderScene};
 use strahl_scene::{Object, Scene};
 
 #[test]
@@ -34,7 +34,7 @@ fn rays_that_graze_what_they_start_on_meet_the_same_with_every_accelerator() {
             let angle = 10f64.powi(step.abs() - 19) * f64::from(step.signum());
             let ray = Ray::new(start, DVec3::new(0.8, 0.0, -0.6) - up * angle);
             let hits = scenes.iter().map(|scene| {
-                let mut tracer = Tracer::new(scene);
+                let mut tracer = Intersector::new(scene);
                 let range = Interval::FORWARD;
                 let hit = tracer.closest_hit(&ray, range, Some(&from), RayClass::Secondary);
                 let any = tracer.any_opaque(&ray, range, Some(&from));

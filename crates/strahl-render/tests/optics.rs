@@ -6,7 +6,7 @@ use common::compiled;
 use strahl_geometry::{Cuboid, Sphere};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_render::{
-    BranchEnd, RayKind, RayNode, RayTree, RenderOptions, TraceSettings, Tracer, explain,
+    BranchEnd, Intersector, RayKind, RayNode, RayTree, RenderOptions, TraceSettings, explain,
     trace::TreeTracer,
 };
 use strahl_scene::{Background, Camera, Object, ObjectExt, Scene};
@@ -323,7 +323,7 @@ fn tiny_spheres_far_away_are_spheres() {
 #[test]
 fn a_query_sees_both_surfaces_of_a_sphere_and_then_nothing() {
     let scene = compiled(&Scene::new().add(Sphere::new(DVec3::ZERO, 1.0)));
-    let mut tracer = Tracer::new(&scene);
+    let mut tracer = Intersector::new(&scene);
     let ray = Ray::new(DVec3::Z * 3.0, DVec3::NEG_Z);
     let class = strahl_render::RayClass::Camera;
     let first = tracer

@@ -6,7 +6,9 @@ use common::{every_shape, glass_and_mirrors};
 use std::sync::Arc;
 use strahl_geometry::{Cuboid, Cylinder, MeshData, Plane, Sphere, TriangleMesh};
 use strahl_math::{DVec3, Interval, Ray, Transform};
-use strahl_render::{CompileOptions, Hit, Output, RayClass, RenderScene, Session, Threads, Tracer};
+use strahl_render::{
+    CompileOptions, Hit, Intersector, Output, RayClass, RenderScene, Session, Threads,
+};
 use strahl_scene::{CsgOp, Object, ObjectExt, Scene};
 use strahl_shade::{Color, Material};
 
@@ -59,7 +61,7 @@ fn many_rays_are_answered_like_single_ones() {
         let scene = compile(&session, &description);
         let rays = rays(&scene);
         for range in [Interval::FORWARD, Interval::new(0.5, 3.0)] {
-            let mut tracer = Tracer::new(&scene);
+            let mut tracer = Intersector::new(&scene);
             let single: Vec<Option<Hit>> = rays
                 .iter()
                 .map(|ray| tracer.closest_hit(ray, range, None, RayClass::Camera))

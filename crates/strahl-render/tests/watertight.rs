@@ -9,7 +9,7 @@ use common::compiled;
 use std::collections::HashMap;
 use strahl_geometry::{MeshData, Shape, TriangleMesh};
 use strahl_math::{DVec3, Interval, Ray};
-use strahl_render::{RayClass, RenderScene, Tracer};
+use strahl_render::{Intersector, RayClass, RenderScene};
 use strahl_scene::{Object, Scene};
 
 /// How many rays to try on each mesh.
@@ -85,7 +85,7 @@ fn star(levels: u32, size: f64, place: DVec3) -> TriangleMesh {
 
 /// How many rays from inside a mesh at its edges and vertices miss it, or hit it far behind what they are aimed at.
 fn lost(mesh: &TriangleMesh, scene: &RenderScene, place: DVec3, size: f64) -> u32 {
-    let mut tracer = Tracer::new(scene);
+    let mut tracer = Intersector::new(scene);
     let mut numbers = Numbers(7);
     let mut lost = 0;
     for round in 0..rays() {

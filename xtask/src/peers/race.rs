@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::time::Instant;
 use strahl::accel::TraversalStats;
 use strahl::prelude::RenderScene;
-use strahl::tracing::{Hit, PACKET, RayClass, Tracer};
+use strahl::tracing::{Hit, Intersector, PACKET, RayClass};
 
 /// A program and how it traces.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -173,7 +173,7 @@ fn trace(
     let segments = &batch.segments[part.clone()];
     match program {
         Program::Ours => {
-            let mut tracer = Tracer::new(ours);
+            let mut tracer = Intersector::new(ours);
             for (ray, from) in batch.rays(part) {
                 if any {
                     answers.hits += usize::from(tracer.any_opaque(ray, batch.range, from));
@@ -186,7 +186,7 @@ fn trace(
             answers.cost = tracer.stats;
         }
         Program::OurPackets => {
-            let mut tracer = Tracer::new(ours);
+            let mut tracer = Intersector::new(ours);
             for first in part.clone().step_by(PACKET) {
                 let rays = &batch.rays[first..part.end.min(first + PACKET)];
                 let from = std::array::from_fn(|lane| batch.starts.get(first + lane));

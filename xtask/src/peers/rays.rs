@@ -4,7 +4,7 @@ use super::meshes::{Rng, View};
 use std::ops::Range;
 use strahl::math::{DVec3, Interval, Ray};
 use strahl::scene::Camera;
-use strahl::tracing::{Origin, PrimaryRays, RayClass, RenderScene, Tracer};
+use strahl::tracing::{Intersector, Origin, PrimaryRays, RayClass, RenderScene};
 
 /// A ray with its range in f32, as Embree takes it; strahl gets the same numbers.
 #[derive(Clone, Copy)]
@@ -120,7 +120,7 @@ pub(super) fn make(scene: &RenderScene, view: View, side: u32) -> Vec<Batch> {
     let camera = Camera::perspective(view.eye, view.target, DVec3::Y, 0.8);
     let camera = PrimaryRays::new(&camera, side, side);
     let mut batches = Kind::ALL.map(Batch::new);
-    let mut tracer = Tracer::new(scene);
+    let mut tracer = Intersector::new(scene);
     let mut rng = Rng(5);
     let tile = |i: u32| {
         let (block, inside) = (i / 16, i % 16);

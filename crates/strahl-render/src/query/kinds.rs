@@ -17,13 +17,13 @@ pub(super) trait Query {
 
     /// Whether the first hit on a primitive with these flags, if it has only one element, can be taken without further checks.
     #[inline(always)]
-    fn is_plain(&self, flags: u8) -> bool {
-        Self::HAS_FAST_SEARCH && self.is_plain_flat(flags)
+    fn is_unfiltered(&self, flags: u8) -> bool {
+        Self::HAS_FAST_SEARCH && self.is_unfiltered_flat(flags)
     }
 
     /// The same for a flat primitive, which a ray hits at most once.
     #[inline(always)]
-    fn is_plain_flat(&self, flags: u8) -> bool {
+    fn is_unfiltered_flat(&self, flags: u8) -> bool {
         let mixed = flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
         flags & Prim::FILTERED == 0 && !mixed && self.wants(flags)
     }

@@ -103,18 +103,18 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         }
         let prim = self.group.prims.at(id);
         // Its block has already rejected it if it faces away.
-        let plain = is_polygon
+        let unfiltered = is_polygon
             && prim.visible & self.search.class != 0
             && prim.flags & Prim::MASKED == 0
             && self
                 .search
                 .query
-                .is_plain_flat(prim.flags & !Prim::FILTERED);
+                .is_unfiltered_flat(prim.flags & !Prim::FILTERED);
         let PrimKind::Shape(index) = prim.kind() else {
             return self.visit(id, t_max);
         };
         match &self.group.shapes[index as usize].shape {
-            Shape::Polygon(polygon) if plain => {
+            Shape::Polygon(polygon) if unfiltered => {
                 let range = Interval::new(self.range_min, t_max);
                 match polygon.hit_in_plane(self.ray, range, at) {
                     Some(t) => self.take(id, t, [0.0; 2], t_max),
@@ -141,7 +141,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             // The primitive's own test decides, which, unlike the test of the block, knows where the ray starts. There is one
             // hit at most.
             let id = self.from_prim;
-            t_max = if self.plain || self.is_plain(id, false) {
+            t_max = if self.unfiltered || self.is_unfiltered(id, false) {
                 match block.met_again(lane, self.ray, Interval::new(self.range_min, t_max)) {
                     Some(t) => self.take(id, t, [0.0; 2], t_max),
                     None => t_max,
@@ -162,10 +162,10 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             let id = leaf.id(index, lane);
             if id == NO_PRIMITIVE || id == self.from_prim {
                 continue;
-            } else if self.plain || self.is_plain(id, B::CURVED) {
+            } else if self.unfiltered || self.is_unfiltered(id, B::CURVED) {
                 let uv = [hits.uv[0][lane], hits.uv[1][lane]];
                 t_max = self.take(id, hits.t[lane], uv, t_max);
-            } else if B::CURVED && Q::ALL && self.is_plain(id, false) {
+            } else if B::CURVED && Q::ALL && self.is_unfiltered(id, false) {
                 for t in block.all_hits(lane, self.ray, range).into_iter().flatten() {
                     t_max = self.take(id, t, [0.0; 2], t_max);
                 }
@@ -184,14 +184,14 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
 
     /// Whether hits of a block on this primitive need no further checks.
     #[inline]
-    fn is_plain(&self, id: u32, curved: bool) -> bool {
+    fn is_unfiltered(&self, id: u32, curved: bool) -> bool {
         let prim = self.group.prims.at(id);
-        let plain = if curved {
-            self.search.query.is_plain(prim.flags)
+        let unfiltered = if curved {
+            self.search.query.is_unfiltered(prim.flags)
         } else {
-            self.search.query.is_plain_flat(prim.flags)
+            self.search.query.is_unfiltered_flat(prim.flags)
         };
-        prim.visible & self.search.class != 0 && plain
+        prim.visible & self.search.class != 0 && unfiltered
     }
 
     /// Takes a hit that needs no further checks.
@@ -215,7 +215,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             || !self
                 .search
                 .query
-                .is_plain_flat(prim.flags & !Prim::FILTERED)
+                .is_unfiltered_flat(prim.flags & !Prim::FILTERED)
         {
             return self.visit(id, t_max);
         }

@@ -2,11 +2,11 @@
 //! rays are.
 
 mod instance;
-mod plain;
+mod unfiltered;
 
 use super::block::{Block, BlockOfLeaf, Fetched, PacketCulls};
 use super::kinds::{Any, Closest, Query, Transmitting};
-use super::{From, GroupVisitor, NONE, Search, Tracer};
+use super::{From, GroupVisitor, Intersector, NONE, Search};
 use crate::activity::{Phase, Slot};
 use crate::blocks::{Blocks, Flats, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
@@ -61,14 +61,14 @@ macro_rules! of_lane {
             from_prim: $self.from_prims[lane],
             base,
             t_max: $t_max,
-            plain: $self.plain,
+            unfiltered: $self.unfiltered,
         };
         $body
     }};
 }
 
-impl Tracer<'_> {
-    /// [`Tracer::closest_hit`] for several rays, at most [`PACKET`], which should be close to each other: the same hits, found
+impl Intersector<'_> {
+    /// [`Intersector::closest_hit`] for several rays, at most [`PACKET`], which should be close to each other: the same hits, found
     /// sooner. `from` has their origins; the results go to `hits`.
     pub fn closest_hits(
         &mut self,
@@ -90,7 +90,7 @@ impl Tracer<'_> {
         self.search_packet(&asked, common_end(rays, range), queries);
     }
 
-    /// [`Tracer::any_opaque`] for several rays, at most [`PACKET`], as bits.
+    /// [`Intersector::any_opaque`] for several rays, at most [`PACKET`], as bits.
     pub fn any_opaques(
         &mut self,
         rays: &[Ray],
@@ -107,7 +107,7 @@ impl Tracer<'_> {
         self.search_opaque(&asked, common_end(rays, range)).0
     }
 
-    /// [`Tracer::occluded`] for several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
+    /// [`Intersector::occluded`] for several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
     pub(crate) fn all_occluded(
         &mut self,
         rays: &[Ray],
@@ -128,7 +128,7 @@ impl Tracer<'_> {
         found
     }
 
-    /// [`Tracer::transmitting_hits`] for several rays; each has a range from `min` to the `t_max` of its lane, and its own list.
+    /// [`Intersector::transmitting_hits`] for several rays; each has a range from `min` to the `t_max` of its lane, and its own list.
     pub(crate) fn all_transmitting_hits(
         &mut self,
         rays: &[Ray],
@@ -240,9 +240,9 @@ impl<'s> Shared<'_, 's> {
         }
         let class = self.class;
         let mut visitor = Together {
-            plain: group
-                .common
-                .is_some_and(|(visible, flags)| visible & class != 0 && queries[0].is_plain(flags)),
+            unfiltered: group.common.is_some_and(|(visible, flags)| {
+                visible & class != 0 && queries[0].is_unfiltered(flags)
+            }),
             shared: &mut *self,
             group,
             blocks,
@@ -316,7 +316,7 @@ struct Together<'v, 'w, 's, Q> {
     coordinates: Option<PacketRays>,
     /// Where they are inside of a shape.
     spans: PacketSpans,
-    plain: bool,
+    unfiltered: bool,
     queries: &'v mut [Q; PACKET],
 }
 
@@ -408,8 +408,8 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, '_, Q> {
         if prim.visible & self.shared.class == 0 || !self.queries[0].wants(prim.flags) {
             return;
         }
-        if let Some(index) = prim.plain_shape().filter(|_| !Q::WATCHES) {
-            self.plain_shape(id, index, lanes, t_max);
+        if let Some(index) = prim.unfiltered_shape().filter(|_| !Q::WATCHES) {
+            self.unfiltered_shape(id, index, lanes, t_max);
             return;
         }
         if let PrimKind::Instance(index) = prim.kind()

@@ -7,8 +7,8 @@ use strahl_geometry::blocks::PacketSpans;
 use strahl_geometry::{PrimHit, Primitive, Scratch, Shape, SurfaceId};
 use strahl_math::{Interval, Ray, Transform};
 
-/// A shape of a group, as a primitive that [is plain](crate::prim::Prim::plain_shape).
-pub(super) struct PlainShape<'g> {
+/// A shape of a group, as a primitive that [has no filter](crate::prim::Prim::unfiltered_shape).
+pub(super) struct UnfilteredShape<'g> {
     pub(super) shape: &'g Shape,
     pub(super) transform: Option<&'g Transform>,
     /// The number of its first element, in the group.
@@ -17,7 +17,7 @@ pub(super) struct PlainShape<'g> {
     pub(super) number: u64,
 }
 
-impl<'g> PlainShape<'g> {
+impl<'g> UnfilteredShape<'g> {
     /// The shape with this index, of the primitive `id`; `base` is the number of the group's first element.
     #[inline(always)]
     pub(super) fn of(group: &'g RenderGroup, id: u32, index: u32, base: u64) -> Self {

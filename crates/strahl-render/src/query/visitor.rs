@@ -2,7 +2,7 @@
 
 use super::block::Fetched;
 use super::kinds::{Query, WalkEvent};
-use super::shapes::PlainShape;
+use super::shapes::UnfilteredShape;
 use super::{From, NONE, Search};
 use crate::activity::Phase;
 use crate::blocks::{Blocks, LeafClass};
@@ -31,7 +31,7 @@ pub(super) struct GroupVisitor<'v, 'a, 's, Q> {
     pub(super) base: u64,
     pub(super) t_max: f64,
     /// Whether hits in blocks need no further checks (see [`RenderGroup::common`]).
-    pub(super) plain: bool,
+    pub(super) unfiltered: bool,
 }
 
 impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
@@ -76,9 +76,9 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
         // Most primitives of most scenes.
         if !Q::ALL
             && !Q::WATCHES
-            && let Some(index) = prim.plain_shape()
+            && let Some(index) = prim.unfiltered_shape()
         {
-            return self.plain_shape(id, index, t_max);
+            return self.unfiltered_shape(id, index, t_max);
         }
         self.visit_any(id, prim, t_max)
     }
@@ -87,8 +87,8 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     /// Tests a shape whose hits need no further checks.
     #[inline(always)]
-    fn plain_shape(&mut self, id: u32, index: u32, t_max: f64) -> f64 {
-        let shape = PlainShape::of(self.group, id, index, self.base);
+    fn unfiltered_shape(&mut self, id: u32, index: u32, t_max: f64) -> f64 {
+        let shape = UnfilteredShape::of(self.group, id, index, self.base);
         let from = match self.from {
             Some((origin, from)) if id == self.from_prim => Some(shape.start(origin, from)),
             _ => None,

@@ -2,6 +2,7 @@
 
 use super::{RenderOptions, Samples, TileResult};
 use crate::activity::Phase;
+use crate::beam::{BeamMask, SQUARE};
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
 use crate::film::{PixelInfo, Region};
@@ -9,7 +10,6 @@ use crate::observer::RayKind;
 use crate::render::Progress;
 use crate::sampling::{Division, Refinement, Sample};
 use crate::scene::RenderScene;
-use crate::sight::{SQUARE, Sight};
 use crate::tiles::TILE;
 use crate::trace::{RayCounts, SampleResult, TraceSettings, TreeTracer};
 use arrayvec::ArrayVec;
@@ -82,9 +82,9 @@ impl<'s> PixelTracer<'s> {
             tree = tree.with_alpha();
         }
         if let Some(activities) = progress.activities() {
-            tree.tracer.slot = activities.slot();
-            tree.tracer.slot.enter(Phase::Sampling);
-            tree.tracer.slot.ray(RayKind::Primary);
+            tree.intersector.slot = activities.slot();
+            tree.intersector.slot.enter(Phase::Sampling);
+            tree.intersector.slot.ray(RayKind::Primary);
         }
         Self {
             tree,
@@ -114,7 +114,7 @@ impl<'s> PixelTracer<'s> {
 
 impl Drop for PixelTracer<'_> {
     fn drop(&mut self) {
-        self.tree.tracer.slot.idle();
+        self.tree.intersector.slot.idle();
     }
 }
 
@@ -145,13 +145,13 @@ impl PixelTracer<'_> {
             });
             return self.end_tile(tile, None, values, Vec::new());
         }
-        let sight = self.sight(tile);
+        let mask = self.beam_mask(tile);
         let mut values = vec![shown(Sample::NOTHING); tile.pixels() as usize];
         for square in squares(tile) {
             if self.leaves() {
                 break;
             }
-            self.blind = sight.is_empty(square.x, square.y);
+            self.blind = mask.is_empty(square.x, square.y);
             if self.blind {
                 let same = blank(self, square.pixels() as u32);
                 for (x, y) in square.positions() {
@@ -185,7 +185,7 @@ impl PixelTracer<'_> {
     ) -> TileResult<T> {
         self.start_tile();
         let mut costs = Vec::new();
-        let sight = self.sight(tile);
+        let mask = self.beam_mask(tile);
         let mut pixel = |tracer: &mut Self, x: u32, y: u32| {
             if !tracer.options.costs {
                 return trace(tracer, x, y);
@@ -202,7 +202,7 @@ impl PixelTracer<'_> {
                     break 'tile;
                 }
                 let width = (end - left).min(SQUARE);
-                self.blind = sight.is_empty(left, y);
+                self.blind = mask.is_empty(left, y);
                 if self.blind
                     && let Some(value) = blank(self, width)
                 {
@@ -234,7 +234,7 @@ impl PixelTracer<'_> {
     ) -> TileResult<Sample> {
         self.start_tile();
         let small = tile.width <= TILE && tile.height <= TILE;
-        let sight = small.then(|| self.sight(tile));
+        let mask = small.then(|| self.beam_mask(tile));
         let mut values = vec![Sample::NOTHING; points.len()];
         let mut costs = Vec::new();
         let mut packet = Packet::new();
@@ -242,7 +242,7 @@ impl PixelTracer<'_> {
             if self.leaves() {
                 break;
             }
-            self.blind = sight.is_some_and(|sight| sight.is_empty(x, y));
+            self.blind = mask.is_some_and(|mask| mask.is_empty(x, y));
             let options = self.options;
             let (dx, dy) = match corners {
                 true => (0.0, 0.0),
@@ -298,15 +298,14 @@ impl PixelTracer<'_> {
             together = 1;
             costs = vec![PixelCost::default(); values.len()];
         }
-        let sight = self.sight(tile);
+        let mask = self.beam_mask(tile);
         for pixels in wanted.chunks(together) {
             let mut division = Division::new(refinement, space);
             for &(x, y) in pixels {
                 division.add((x - tile.x, y - tile.y), corners(x, y));
             }
-            let (means, cost) = self.measured(|tracer| {
-                division.means(|places| tracer.samples_in(tile, &sight, places))
-            });
+            let (means, cost) = self
+                .measured(|tracer| division.means(|places| tracer.samples_in(tile, &mask, places)));
             let Some(means) = means else {
                 break;
             };
@@ -324,7 +323,7 @@ impl PixelTracer<'_> {
     fn samples_in(
         &mut self,
         tile: Region,
-        sight: &Sight,
+        mask: &BeamMask,
         places: &[(f64, f64)],
     ) -> Option<Vec<Sample>> {
         let mut samples = vec![Sample::NOTHING; places.len()];
@@ -335,7 +334,7 @@ impl PixelTracer<'_> {
             }
             let (x, y) = (f64::from(tile.x) + dx, f64::from(tile.y) + dy);
             let last = (tile.x + tile.width - 1, tile.y + tile.height - 1);
-            self.blind = sight.is_empty((x as u32).min(last.0), (y as u32).min(last.1));
+            self.blind = mask.is_empty((x as u32).min(last.0), (y as u32).min(last.1));
             if self.together && !self.blind {
                 packet.push((number, self.rays.ray(x, y)));
                 if packet.is_full() {
@@ -362,8 +361,8 @@ impl PixelTracer<'_> {
     /// Forgets what is known of the last tile.
     pub(super) fn start_tile(&mut self) {
         self.tree.counts = RayCounts::default();
-        self.tree.tracer.stats = TraversalStats::default();
-        self.tree.tracer.forget_occluders();
+        self.tree.intersector.stats = TraversalStats::default();
+        self.tree.intersector.forget_occluders();
     }
 
     pub(super) fn end_tile<T>(
@@ -380,24 +379,24 @@ impl PixelTracer<'_> {
             costs,
             infos: std::mem::take(&mut self.infos),
             counts: self.tree.counts,
-            traversal: self.tree.tracer.stats,
+            traversal: self.tree.intersector.stats,
         }
     }
 
     /// The pixels of a tile that may see something. All of them where costs are shown, since these are the costs of single
     /// rays.
-    pub(super) fn sight(&self, tile: Region) -> Sight {
+    pub(super) fn beam_mask(&self, tile: Region) -> BeamMask {
         let options = self.options;
         if options.trace.beams && !options.costs && !options.info {
-            Sight::of(tile, self.tree.tracer.scene, self.rays)
+            BeamMask::of(tile, self.tree.intersector.scene, self.rays)
         } else {
-            Sight::all(tile)
+            BeamMask::all(tile)
         }
     }
 
     /// The cost of the tile so far.
     fn spent(&self) -> PixelCost {
-        let stats = self.tree.tracer.stats;
+        let stats = self.tree.intersector.stats;
         PixelCost {
             tests: stats.primitive_tests,
             steps: stats.node_visits,
@@ -436,7 +435,7 @@ impl PixelTracer<'_> {
     /// The samples of each of `pixels` pixels in the first pass, if all of them see the same of the background.
     pub(super) fn blank(&mut self, pixels: u32) -> Option<Samples> {
         let each = self.options.sampling.places(0, 0, 0, 0).len();
-        let sample = self.tree.same_nothing(pixels as usize * each)?;
+        let sample = self.tree.uniform_miss(pixels as usize * each)?;
         let mut samples = Samples::NONE;
         for _ in 0..each {
             samples.add(sample);
@@ -511,12 +510,12 @@ impl PixelTracer<'_> {
             return mean;
         }
         let mut clear = (0.0, 0u32);
-        let before = self.tree.tracer.stats.primitive_tests;
+        let before = self.tree.intersector.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;
         let (tree, depth, blind) = (&mut self.tree, &mut self.depth, self.blind);
         let color = self.rays.color(x, y, |ray| {
             let sample = if blind {
-                tree.nothing(ray)
+                tree.miss(ray)
             } else {
                 tree.trace(ray, &mut ())
             };
@@ -528,7 +527,7 @@ impl PixelTracer<'_> {
             sample.color
         });
         if keep && self.options.info {
-            let tests = self.tree.tracer.stats.primitive_tests - before;
+            let tests = self.tree.intersector.stats.primitive_tests - before;
             self.infos.push(PixelInfo::new(&first, tests));
         }
         Sample {

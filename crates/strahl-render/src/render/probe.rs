@@ -27,7 +27,7 @@ pub(crate) fn probe_rows<T: Send>(
         if progress.cancelled() {
             return Err(RenderError::Cancelled);
         }
-        tracer.tree.tracer.forget_occluders();
+        tracer.tree.intersector.forget_occluders();
         Ok(look(&mut |x, y| tracer.probe(x, y), row))
     };
     pool.install(|| {

@@ -4,10 +4,10 @@
 use super::pixels::{Packet, PixelTracer, squares};
 use super::refine::Comparison;
 use super::{Samples, TileResult};
+use crate::beam::BeamMask;
 use crate::cost::PixelCost;
 use crate::film::Region;
 use crate::sampling::{Quadrants, Sample};
-use crate::sight::Sight;
 use strahl_accel::PACKET;
 use strahl_shade::Color;
 
@@ -132,7 +132,7 @@ impl PixelTracer<'_> {
         first: impl Fn(u32, u32) -> Sample,
     ) -> TileResult<Option<(Sample, Quadrants)>> {
         self.start_tile();
-        let sight = self.sight(tile);
+        let mask = self.beam_mask(tile);
         let count = tile.pixels() as usize;
         let mut costs = vec![PixelCost::default(); if self.options.costs { count } else { 0 }];
         let mut pixels = Pixels::new(tile, first);
@@ -144,8 +144,7 @@ impl PixelTracer<'_> {
         }
         loop {
             let round = std::mem::take(&mut pixels.waiting);
-            if round.is_empty() || !self.refine(tile, &round, &mut pixels.list, &sight, &mut costs)
-            {
+            if round.is_empty() || !self.refine(tile, &round, &mut pixels.list, &mask, &mut costs) {
                 break;
             }
             pixels.compare(comparison, &round);
@@ -163,7 +162,7 @@ impl PixelTracer<'_> {
         tile: Region,
         numbers: &[usize],
         list: &mut [Refined],
-        sight: &Sight,
+        mask: &BeamMask,
         costs: &mut [PixelCost],
     ) -> bool {
         let mut packet = Packet::new();
@@ -184,7 +183,7 @@ impl PixelTracer<'_> {
             let (x, y) = pixel.at;
             let wanted = pixel.wanted - pixel.known;
             pixel.known = pixel.wanted;
-            self.blind = sight.is_empty(x, y);
+            self.blind = mask.is_empty(x, y);
             for place in options.sampling.places(1, x, y, options.seed) {
                 let quadrant = Quadrants::of(place);
                 if !wanted.has(quadrant) {

@@ -252,7 +252,7 @@ impl Work {
                     Some(_) => tracer.points(tile, points(tile, origin, 1, known), true),
                     None => tracer.first_pass(
                         tile,
-                        |tracer, corners| tracer.tree.same_nothing(corners as usize),
+                        |tracer, corners| tracer.tree.uniform_miss(corners as usize),
                         |tracer, x, y| tracer.corner(x, y),
                         |sample| sample,
                     ),

@@ -4,11 +4,11 @@ use super::ShadowRay;
 use crate::hit::Hit;
 use crate::media::MediaArena;
 use crate::observer::{ShadowHit, ShadowReport};
-use crate::query::Tracer;
+use crate::query::Intersector;
 use strahl_shade::Color;
 
-impl Tracer<'_> {
-    /// Follows a shadow ray as [`Tracer::shadow`] does, and tells what is in its way: the nearest thing that blocks it, or everything
+impl Intersector<'_> {
+    /// Follows a shadow ray as [`Intersector::shadow`] does, and tells what is in its way: the nearest thing that blocks it, or everything
     /// that weakens the light.
     #[cold]
     pub(crate) fn shadow_report(

@@ -54,7 +54,7 @@ impl<'s> TreeTracer<'s> {
         let size = area.size_1 as usize * area.size_2 as usize;
         let together = (TOGETHER / size.max(1)).clamp(1, PACKET);
         for few in arriving.chunks_mut(together) {
-            let light_source = &self.tracer.scene.lights[light].light;
+            let light_source = &self.intersector.scene.lights[light].light;
             let samples: ArrayVec<LightSample, PACKET> = few.iter().map(|one| one.sample).collect();
             let mut queries = ArrayVec::<AreaQuery<'_>, PACKET>::new();
             queries.extend(few.iter().zip(&samples).map(|(one, center)| {
@@ -183,7 +183,7 @@ impl<'s> TreeTracer<'s> {
             });
         }
         let mut shadows = [Shadow::NONE; PACKET];
-        let together = self.settings.packets && self.tracer.scene.mask(light).is_none();
+        let together = self.settings.packets && self.intersector.scene.mask(light).is_none();
         if together && aims.len() >= FEW {
             self.shadows_of(&aims, light, &mut shadows);
         } else {

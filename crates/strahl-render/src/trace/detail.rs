@@ -21,7 +21,7 @@ impl<'s> TreeTracer<'s> {
                 model: self.settings.force_shading,
             }
         };
-        surface.report(self.tracer.scene, &point.hit, split, shading)
+        surface.report(self.intersector.scene, &point.hit, split, shading)
     }
 
     /// What the term of a light is made of.
@@ -29,7 +29,7 @@ impl<'s> TreeTracer<'s> {
     pub(super) fn light_detail(&mut self, point: &Point<'s>, term: &LightTerm) -> LightDetail {
         let Point { surface, .. } = point;
         let number = term.light as usize;
-        let light = &self.tracer.scene.lights[number].light;
+        let light = &self.intersector.scene.lights[number].light;
         let mut detail = LightDetail {
             fog: Color::WHITE,
             highlights: light.highlights,

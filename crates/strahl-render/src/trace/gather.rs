@@ -21,7 +21,7 @@ impl<'s> TreeTracer<'s> {
     /// Asks about rays and lights.
     pub(crate) const fn probe(&mut self) -> Probe<'_, 's> {
         Probe {
-            tracer: &mut self.tracer,
+            intersector: &mut self.intersector,
             media: &mut self.media,
             hits: &mut self.shadow_hits,
         }

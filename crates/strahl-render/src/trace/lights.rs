@@ -66,7 +66,7 @@ impl<'s> TreeTracer<'s> {
         lanes: &Lanes,
         observer: &mut O,
     ) {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         if !scene.has_light_groups() {
             let mut found;
             let mut places = None;
@@ -99,7 +99,7 @@ impl<'s> TreeTracer<'s> {
         number: usize,
         observer: &mut O,
     ) {
-        let light = &self.tracer.scene.lights[number].light;
+        let light = &self.intersector.scene.lights[number].light;
         let mut arriving = std::mem::take(&mut self.arriving);
         arriving.clear();
         let mut found;
@@ -117,7 +117,7 @@ impl<'s> TreeTracer<'s> {
             };
             self.aim(point, seen, *lane, number, &mut arriving, observer);
         }
-        let blockable = light.casts_shadows || self.tracer.scene.mask(number).is_some();
+        let blockable = light.casts_shadows || self.intersector.scene.mask(number).is_some();
         if blockable && !arriving.is_empty() {
             self.shadows(points, number, &mut arriving, observer);
         }
@@ -140,7 +140,7 @@ impl<'s> TreeTracer<'s> {
         arriving: &mut Vec<Arriving>,
         observer: &mut O,
     ) {
-        let light = &self.tracer.scene.lights[number].light;
+        let light = &self.intersector.scene.lights[number].light;
         let Some((sample, n_dot_l)) = seen else {
             if O::DETAILED {
                 self.report_light(point, LightTerm::none(number), observer);
@@ -177,9 +177,9 @@ impl<'s> TreeTracer<'s> {
         arriving: &mut [Arriving],
         observer: &mut O,
     ) {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         let light = &scene.lights[number].light;
-        self.tracer.slot.shadow(number);
+        self.intersector.slot.shadow(number);
         if let Some(area) = &light.area {
             self.area_light(area, number, points, arriving, observer);
             return;
@@ -247,9 +247,11 @@ impl<'s> TreeTracer<'s> {
             rays.push(Ray::new(start, aim.direction));
             (from[lane], t_max[lane], places[lane]) = (Some(origin), aim.range.max, index);
         }
-        let stopped = self.tracer.all_occluded(&rays, min, t_max, &from, light);
+        let stopped = self
+            .intersector
+            .all_occluded(&rays, min, t_max, &from, light);
         let open = !stopped & ((1 << rays.len()) - 1);
-        let transmits = self.tracer.scene.transmits;
+        let transmits = self.intersector.scene.transmits;
         let mut lists = std::mem::take(&mut self.packet_hits);
         if transmits && open != 0 {
             for (lane, hits) in lists.iter_mut().enumerate() {
@@ -258,7 +260,7 @@ impl<'s> TreeTracer<'s> {
                     t_max[lane] = f64::NEG_INFINITY;
                 }
             }
-            self.tracer
+            self.intersector
                 .all_transmitting_hits(&rays, min, t_max, &from, &mut lists);
         }
         for (lane, index) in places[..rays.len()].iter().enumerate() {
@@ -268,7 +270,8 @@ impl<'s> TreeTracer<'s> {
                 let from = from[lane].unwrap_or(&Origin::NOWHERE);
                 let shadow_ray = aims[*index].shadow_ray(light, &rays[lane], from);
                 let hits = &mut lists[lane];
-                self.tracer.filtered(&shadow_ray, &mut self.media, hits)
+                self.intersector
+                    .filtered(&shadow_ray, &mut self.media, hits)
             } else {
                 Shadow::NONE
             };
@@ -286,7 +289,7 @@ impl<'s> TreeTracer<'s> {
         let (ray, from) = aim.start();
         let shadow_ray = aim.shadow_ray(light, &ray, &from);
         let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-        self.tracer.shadow(&shadow_ray, media, hits)
+        self.intersector.shadow(&shadow_ray, media, hits)
     }
 
     /// What is in the way of a shadow ray.
@@ -295,7 +298,7 @@ impl<'s> TreeTracer<'s> {
         let (ray, from) = aim.start();
         let shadow_ray = aim.shadow_ray(light, &ray, &from);
         let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-        self.tracer.shadow_report(&shadow_ray, media, hits)
+        self.intersector.shadow_report(&shadow_ray, media, hits)
     }
 
     /// Adds the light of a light source that a surface reflects.
@@ -368,7 +371,7 @@ impl<'s> TreeTracer<'s> {
         sample: &LightSample,
         point: &Point<'s>,
     ) -> Option<Color> {
-        if self.tracer.scene.fogs.is_empty() && self.transport.medium.is_none() {
+        if self.intersector.scene.fogs.is_empty() && self.transport.medium.is_none() {
             return None;
         }
         self.weakened_before(light, sample, point)
@@ -391,7 +394,7 @@ impl<'s> TreeTracer<'s> {
 
     /// What fog leaves of it.
     fn fog_before(&self, light: &Light, sample: &LightSample, point: &Point<'s>) -> Option<Color> {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         if !light.fogged || !self.media.in_air(point.branch.media) {
             return None;
         }
@@ -407,8 +410,10 @@ impl<'s> TreeTracer<'s> {
     /// Shadow rays are traced; work for a point follows.
     #[inline(always)]
     fn back_to_shading(&self, point: &Point<'s>) {
-        self.tracer.slot.ray(point.branch.kind);
-        self.tracer.slot.enter_for(Phase::Shading, point.hit.id);
+        self.intersector.slot.ray(point.branch.kind);
+        self.intersector
+            .slot
+            .enter_for(Phase::Shading, point.hit.id);
     }
 
     /// Takes what a shadow ray brought.

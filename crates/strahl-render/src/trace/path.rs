@@ -26,13 +26,13 @@ impl<'s> TreeTracer<'s> {
         let (range, class) = (Interval::FORWARD, RayClass::Secondary);
         self.has_met = false;
         let hit = self
-            .tracer
+            .intersector
             .closest_hit(ray, range, origin.as_ref(), class)?;
         let mut point = self
             .met
             .take()
             .unwrap_or_else(|| Box::new(Point::unknown(&self.blank)));
-        let (scene, speed) = (self.tracer.scene, ray.direction.length());
+        let (scene, speed) = (self.intersector.scene, ray.direction.length());
         point.branch = Branch {
             origin: *origin,
             ..Branch::primary(ray, 0, *media)

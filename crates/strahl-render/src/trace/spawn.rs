@@ -39,7 +39,7 @@ impl<'s> TreeTracer<'s> {
         } = point;
         let mut split = surface.split(&branch.ray);
         if let Some(inside) = surface.fading() {
-            split.fade = self.tracer.scene.faded(inside, point.length);
+            split.fade = self.intersector.scene.faded(inside, point.length);
         }
         if paint.stacks.len() > 1 && !surface.material.finish.transmission.is_black() {
             layers::passages(paint, surface, &branch.ray, split.fade, &mut self.passages);
@@ -134,7 +134,7 @@ impl<'s> TreeTracer<'s> {
             self.queue(point, &whole, observer);
         }
         for part in SpectralPart::all(parts) {
-            let bent = surface.bent_part(self.tracer.scene, passage.normal, part);
+            let bent = surface.bent_part(self.intersector.scene, passage.normal, part);
             let direction = bent.unwrap_or_else(|| surface.mirrored(passage.normal));
             let offshoot = Offshoot {
                 divided: true,
@@ -149,8 +149,8 @@ impl<'s> TreeTracer<'s> {
     /// The number of spectral parts into which a branch is split behind a surface; 0 if it is not.
     #[inline]
     fn parts_behind(&self, branch: &Branch, surface: &Surface<'_>) -> u16 {
-        if self.tracer.scene.disperses && branch.part.is_white() {
-            surface.spectral_parts(self.tracer.scene)
+        if self.intersector.scene.disperses && branch.part.is_white() {
+            surface.spectral_parts(self.intersector.scene)
         } else {
             0
         }

@@ -96,11 +96,11 @@ impl<'s> TreeTracer<'s> {
             }
             for lane in lanes {
                 let branch = &points[lane].branch;
-                self.tracer.slot.ray(branch.kind);
+                self.intersector.slot.ray(branch.kind);
                 let from = branch.origin.as_ref();
-                hits[lane] = self
-                    .tracer
-                    .closest_hit(&branch.ray, Interval::FORWARD, from, class);
+                hits[lane] =
+                    self.intersector
+                        .closest_hit(&branch.ray, Interval::FORWARD, from, class);
             }
         }
     }
@@ -119,8 +119,8 @@ impl<'s> TreeTracer<'s> {
             rays.push(points[*lane].branch.ray);
         }
         let first = &points[lanes[0]].branch;
-        self.tracer.slot.ray(first.kind);
-        self.tracer
+        self.intersector.slot.ray(first.kind);
+        self.intersector
             .closest_hits(&rays, Interval::FORWARD, &from, first.class, hits);
     }
 
@@ -131,12 +131,12 @@ impl<'s> TreeTracer<'s> {
         hits: &[Option<Hit>],
         observer: &mut O,
     ) -> Lanes {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         let mut lanes = Lanes::new();
         // Three short loops: while a point waits for a square root or a division, the processor goes on with the next point.
         for (point, hit) in points.iter_mut().zip(hits) {
             if let Some(hit) = hit {
-                self.tracer.slot.enter_for(Phase::Surface, hit.id);
+                self.intersector.slot.enter_for(Phase::Surface, hit.id);
                 point.surface.find(scene, &point.branch, hit, self.uv);
             }
         }
@@ -145,7 +145,7 @@ impl<'s> TreeTracer<'s> {
             let branch = &point.branch;
             self.deepest = self.deepest.max(branch.depth);
             if hit.is_none() && branch.kind == RayKind::Primary && !O::ACTIVE {
-                self.roots[branch.parent as usize % PACKET] = self.nothing_along(branch);
+                self.roots[branch.parent as usize % PACKET] = self.miss_along(branch);
                 continue;
             }
             self.counts.count(branch.kind, hit.is_some());
@@ -172,7 +172,7 @@ impl<'s> TreeTracer<'s> {
                     if let Some(coverage) = &mut self.coverage {
                         coverage.enter();
                     }
-                    self.tracer.slot.enter_for(Phase::Surface, hit.id);
+                    self.intersector.slot.enter_for(Phase::Surface, hit.id);
                     point.hit = *hit;
                     point.length = length;
                     point
@@ -183,7 +183,7 @@ impl<'s> TreeTracer<'s> {
                 None => {
                     let direction = branch.ray.direction;
                     *local = match &mut self.coverage {
-                        Some(coverage) => coverage.enter_nothing(direction),
+                        Some(coverage) => coverage.enter_miss(direction),
                         None => scene.background.along(direction),
                     };
                 }
@@ -207,11 +207,13 @@ impl<'s> TreeTracer<'s> {
         lanes: &mut Lanes,
         observer: &mut O,
     ) {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         find_colors(scene, points, lanes, &self.paints);
         lanes.retain(|lane| {
             let point = &mut points[*lane];
-            self.tracer.slot.enter_for(Phase::Texture, point.hit.id);
+            self.intersector
+                .slot
+                .enter_for(Phase::Texture, point.hit.id);
             let Point {
                 surface,
                 hit,
@@ -219,7 +221,9 @@ impl<'s> TreeTracer<'s> {
                 ..
             } = point;
             layers::paint(scene, surface, hit, paint, &mut self.paints);
-            self.tracer.slot.enter_for(Phase::Shading, point.hit.id);
+            self.intersector
+                .slot
+                .enter_for(Phase::Shading, point.hit.id);
             let surface = &point.surface;
             point.model = self.model_of(surface);
             let diagnostic = point.model.is_diagnostic();
@@ -251,7 +255,7 @@ impl<'s> TreeTracer<'s> {
         }
         if point.model.is_diagnostic() {
             self.nodes[point.node as usize].local =
-                surface.diagnose(self.tracer.scene, point.model, &first);
+                surface.diagnose(self.intersector.scene, point.model, &first);
         }
     }
 
@@ -261,7 +265,7 @@ impl<'s> TreeTracer<'s> {
         let (surface, model) = (&point.surface, point.model);
         if model.is_diagnostic() {
             let shading = Shading::Model(model);
-            let scene = self.tracer.scene;
+            let scene = self.intersector.scene;
             let seen = O::DETAILED.then(|| surface.report(scene, &point.hit, Split::NONE, shading));
             observer.ray(self.ray_report(point, seen, None));
             return;

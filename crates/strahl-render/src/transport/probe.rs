@@ -3,7 +3,7 @@
 use super::SurfaceSample;
 use crate::hit::{Hit, Origin, RayClass};
 use crate::media::{MediaArena, MediaStack};
-use crate::query::Tracer;
+use crate::query::Intersector;
 use crate::scene::RenderScene;
 use crate::shadow::ShadowRay;
 use crate::trace::{TraceSettings, TreeTracer};
@@ -13,7 +13,7 @@ use strahl_shade::{Color, LightSample};
 /// Asks about rays and lights, with the working memory of one thread.
 #[derive(Debug)]
 pub struct Probe<'p, 's> {
-    pub(crate) tracer: &'p mut Tracer<'s>,
+    pub(crate) intersector: &'p mut Intersector<'s>,
     pub(crate) media: &'p mut MediaArena,
     pub(crate) hits: &'p mut Vec<Hit>,
 }
@@ -21,7 +21,7 @@ pub struct Probe<'p, 's> {
 impl<'s> Probe<'_, 's> {
     /// The scene.
     pub const fn scene(&self) -> &'s RenderScene {
-        self.tracer.scene
+        self.intersector.scene
     }
 
     /// The nearest hit of a ray with `range.min < t <= range.max`, of objects that reflections show.
@@ -31,16 +31,16 @@ impl<'s> Probe<'_, 's> {
         range: Interval,
         from: Option<&Origin>,
     ) -> Option<Hit> {
-        self.tracer
+        self.intersector
             .closest_hit(ray, range, from, RayClass::Secondary)
     }
 
     /// The light that arrives from light source `number` (an index of the scene's lights) at a point in the air, and the share of it that
     /// objects let through; `None` if it does not shine there. Of a light with an extent the centre counts.
     pub fn light(&mut self, number: usize, position: DVec3) -> Option<(LightSample, Color)> {
-        let light = &self.tracer.scene.lights.get(number)?.light;
+        let light = &self.intersector.scene.lights.get(number)?.light;
         let sample = light.illuminate(position)?;
-        let is_free = !light.casts_shadows && self.tracer.scene.mask(number).is_none();
+        let is_free = !light.casts_shadows && self.intersector.scene.mask(number).is_none();
         if is_free || sample.range.is_empty() {
             return Some((sample, Color::WHITE));
         }
@@ -51,7 +51,7 @@ impl<'s> Probe<'_, 's> {
             light: number,
             media: MediaStack::VACUUM,
         };
-        let shadow = self.tracer.shadow(&shadow_ray, self.media, self.hits);
+        let shadow = self.intersector.shadow(&shadow_ray, self.media, self.hits);
         Some((sample, shadow.visible))
     }
 }

@@ -1,7 +1,7 @@
 //! Tests of shapes whose hits need no further checks, for the rays of a packet.
 
 use super::super::kinds::Query;
-use super::super::shapes::PlainShape;
+use super::super::shapes::UnfilteredShape;
 use super::{FEW, Together, are_dense};
 use crate::activity::Phase;
 use crate::hit::Hit;
@@ -13,14 +13,14 @@ use strahl_math::{Interval, Ray};
 impl<Q: Query> Together<'_, '_, '_, Q> {
     /// Tests a shape whose hits need no further checks for several rays.
     #[inline(never)]
-    pub(super) fn plain_shape(
+    pub(super) fn unfiltered_shape(
         &mut self,
         id: u32,
         index: u32,
         lanes: u32,
         t_max: &mut [f64; PACKET],
     ) {
-        let shape = PlainShape::of(self.group, id, index, self.place.base);
+        let shape = UnfilteredShape::of(self.group, id, index, self.place.base);
         self.shared
             .slot
             .enter_for(Phase::Intersection, shape.number);
@@ -66,7 +66,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
 
     /// The surface of a shape that the ray of a lane starts on, if it starts on this primitive.
     #[inline(always)]
-    fn start_on(&self, id: u32, shape: &PlainShape<'_>, lane: usize) -> Option<SurfaceId> {
+    fn start_on(&self, id: u32, shape: &UnfilteredShape<'_>, lane: usize) -> Option<SurfaceId> {
         let origin = self.asked.from[lane].filter(|_| self.from_prims[lane] == id)?;
         Some(shape.start(origin, origin.id - self.place.base))
     }
@@ -75,7 +75,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     fn meet_tree(
         &mut self,
         id: u32,
-        shape: &PlainShape<'_>,
+        shape: &UnfilteredShape<'_>,
         tree: &Csg,
         lanes: u32,
         t_max: &mut [f64; PACKET],
@@ -128,7 +128,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     }
 
     /// Finds where those of several rays that don't start on a shape are inside of it, four side by side.
-    fn find_spans(&mut self, id: u32, shape: &PlainShape<'_>, lanes: u32) {
+    fn find_spans(&mut self, id: u32, shape: &UnfilteredShape<'_>, lanes: u32) {
         let elsewhere = lanes & !self.lanes_from(id);
         let rays = self
             .coordinates
@@ -141,7 +141,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     fn meet_all(
         &mut self,
         id: u32,
-        shape: &PlainShape<'_>,
+        shape: &UnfilteredShape<'_>,
         side_by_side: bool,
         lanes: u32,
         t_max: &mut [f64; PACKET],
@@ -175,7 +175,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     fn meet_spans(
         &mut self,
         id: u32,
-        shape: &PlainShape<'_>,
+        shape: &UnfilteredShape<'_>,
         lanes: u32,
         t_max: &mut [f64; PACKET],
     ) {
@@ -207,7 +207,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     fn meet_together(
         &mut self,
         id: u32,
-        shape: &PlainShape<'_>,
+        shape: &UnfilteredShape<'_>,
         lanes: u32,
         t_max: &mut [f64; PACKET],
         meet: impl Fn(&Ray, Interval, Option<SurfaceId>, &mut Scratch) -> Option<Hit>,

@@ -15,9 +15,9 @@ use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, dispatch};
 
 /// A group all of whose primitives are tested in blocks of one kind, with hits that need no further checks (see
-/// [`Query::is_plain`]).
+/// [`Query::is_unfiltered`]).
 #[derive(Clone, Copy)]
-pub(super) struct Plain<'g> {
+pub(super) struct Unfiltered<'g> {
     pub(super) bvh: &'g Bvh8,
     pub(super) blocks: OneKind<'g>,
     /// First element number of each primitive, if it is not the primitive's own.
@@ -28,7 +28,7 @@ pub(super) struct Plain<'g> {
     pub(super) base: u64,
 }
 
-impl Plain<'_> {
+impl Unfiltered<'_> {
     /// Searches the group; returns the new upper end of the range.
     #[inline(always)]
     pub(super) fn search<Q: Query>(
@@ -85,7 +85,7 @@ impl Plain<'_> {
 }
 
 struct BlockVisitor<'v, 'g, B, Q> {
-    of: &'v Plain<'g>,
+    of: &'v Unfiltered<'g>,
     /// In the order of the leaves.
     blocks: &'v [B],
     ray: &'v Ray,

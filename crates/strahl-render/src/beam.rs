@@ -16,14 +16,14 @@ const _: () = assert!(SQUARES * SQUARES == u64::BITS);
 
 /// The squares of a tile in which a ray may meet something.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sight {
+pub(crate) struct BeamMask {
     x: u32,
     y: u32,
     /// A bit per square, row by row.
     seen: u64,
 }
 
-impl Sight {
+impl BeamMask {
     /// No square is culled.
     pub(crate) fn all(tile: Region) -> Self {
         Self {

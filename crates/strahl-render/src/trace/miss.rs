@@ -10,7 +10,7 @@ use strahl_scene::Background;
 use strahl_shade::Color;
 
 /// The radiance along primary rays that hit nothing, if it is the same for all.
-pub(super) fn common(scene: &RenderScene) -> Option<Color> {
+pub(super) fn uniform_background(scene: &RenderScene) -> Option<Color> {
     if scene.has_air() || scene.absorbs_around_the_eye() {
         return None;
     }
@@ -25,7 +25,7 @@ pub(super) fn common(scene: &RenderScene) -> Option<Color> {
 impl TreeTracer<'_> {
     /// With the alpha channel: the background is left out of what primary rays see, as far as it is see-through.
     pub(crate) fn with_alpha(mut self) -> Self {
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         let coverage = Coverage::new(scene.background.clone(), scene.background_alpha);
         // What is the same along all rays can be asked along any.
         let (_, clear) = coverage.beyond(DVec3::Y);
@@ -36,11 +36,11 @@ impl TreeTracer<'_> {
     }
 
     /// What a primary ray sees that hits nothing.
-    pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
+    pub(crate) fn miss(&mut self, primary: &Ray) -> SampleResult {
         let eye = self.eye_media(primary.origin);
         self.put(0, primary, 0, eye);
         let points = std::mem::take(&mut self.points);
-        let Sample { color, clear } = self.nothing_along(&points[0].branch);
+        let Sample { color, clear } = self.miss_along(&points[0].branch);
         self.points = points;
         SampleResult {
             color,
@@ -52,12 +52,12 @@ impl TreeTracer<'_> {
     }
 
     /// The same for a ray that is in a tree already.
-    pub(super) fn nothing_along(&mut self, primary: &Branch) -> Sample {
+    pub(super) fn miss_along(&mut self, primary: &Branch) -> Sample {
         self.counts.count(RayKind::Primary, false);
         if let Some(sample) = self.beyond {
             return sample;
         }
-        let scene = self.tracer.scene;
+        let scene = self.intersector.scene;
         let (keeps, adds) = self.in_front(primary, f64::INFINITY);
         // The same sum as of a tree without branches, including the sign of zeros.
         let direction = primary.ray.direction;
@@ -81,7 +81,7 @@ impl TreeTracer<'_> {
 
     /// What primary rays see that hit nothing, if it is the same for all; then `rays` rays are counted as traced.
     #[inline]
-    pub(crate) fn same_nothing(&mut self, rays: usize) -> Option<Sample> {
+    pub(crate) fn uniform_miss(&mut self, rays: usize) -> Option<Sample> {
         if self.beyond.is_some() {
             self.counts.primary += rays as u64;
         }
