@@ -1,6 +1,6 @@
 //! A Bezier patch of any degree, polynomial or rational: what all free-form surfaces are made of.
 
-use super::border::Border;
+use super::border::{Border, Region};
 use super::degree;
 use super::frame::Frame;
 use super::hull;
@@ -136,12 +136,20 @@ impl<const K: usize> Bezier<K> {
 
     /// All hits of the line, in no order.
     pub(super) fn all(&self, frame: &Frame, keep: Keep<'_>) -> Vec<Candidate> {
-        let winding = || self.winding(frame);
+        let winding = |region: &Region| {
+            if *region == Region::WHOLE {
+                return self.winding(frame);
+            }
+            let see = |p: &[f64; 4]| frame.see(p);
+            self.border.winding_of_region(&self.net, region, see)
+        };
         let lost = |hits: &[Candidate], given_up: &[Candidate], sign| {
             degree::lost(&self.net, frame, hits, given_up, sign)
         };
         let mut found = if self.is_thin {
-            settle::add_lost(vec![], winding(), |hits, sign| lost(hits, &[], sign))
+            settle::add_lost(vec![], self.winding(frame), |hits, sign| {
+                lost(hits, &[], sign)
+            })
         } else {
             let mut search = self.search(frame, keep, Aim::All(vec![]));
             search.run();
