@@ -285,6 +285,61 @@ fn chords_of_borders_in_planes_of_symmetry_meet_what_their_neighbours_meet() {
     assert!(seen.iter().all(|n| *n > 100), "{seen:?}");
 }
 
+/// Rays that nearly touch the surface, between 1e-6 and 1e-16 from the silhouette: they meet it twice down to 1e-7, and nearer to it twice or not at all. Within rounding
+/// errors of the silhouette they may meet both patches at a border twice.
+#[test]
+fn rays_that_nearly_touch_the_surface_meet_it_twice_or_not_at_all() {
+    let bodies = [CatmullClark, Loop].map(|scheme| surface(&ball(scheme, 5, 2, 4)));
+    let mut random = Random::new(43);
+    let mut seen = [0; 2];
+    for round in 0..4000 {
+        let body = &bodies[round % 2];
+        let scheme = body.cage.scheme();
+        let element = random.below(u64::from(body.elements())) as u32;
+        let uv = if random.below(2) == 0 {
+            place(scheme, &mut random)
+        } else {
+            let [u, v] = [random.unit(), random.unit()];
+            if scheme == Loop {
+                [u * v, v - u * v]
+            } else {
+                [u, v]
+            }
+        };
+        let ([target, by_u, by_v], front) = jet(body, element, uv);
+        let turned = by_u * random.between(-1.0, 1.0) + by_v * random.between(-1.0, 1.0);
+        let (Some(along), Some(across)) = (turned.try_normalize(), front) else {
+            continue;
+        };
+        let out = if across.dot(target) > 0.0 {
+            across
+        } else {
+            -across
+        };
+        let passes = |depth: f64| {
+            let ray = Ray::new(target - out * depth - along * 4.0, along);
+            let passes = body.passes_in_order(&ray);
+            assert!(agrees(body, &ray, &passes), "{ray:?} {passes:?}");
+            assert_eq!(sum(&passes, f64::NEG_INFINITY, f64::INFINITY), 0, "{ray:?}");
+            let near = passes.iter().filter(|pass| (pass.hit.t - 4.0).abs() < 0.1);
+            near.count()
+        };
+        // Where the surface is curved towards the inside, and nothing else is nearby.
+        if passes(1e-4) != 2 || passes(-1e-4) != 0 {
+            continue;
+        }
+        let depth = random.magnitude(-16.0, -6.0);
+        let count = passes(depth);
+        assert!(count == 2 || depth < 1e-7, "{depth}: {count}");
+        assert!(
+            count == 0 || count == 2 || depth < 1e-14,
+            "{depth}: {count}"
+        );
+        seen[usize::from(count > 0)] += 1;
+    }
+    assert!(seen.iter().all(|n| *n > 300), "{seen:?}");
+}
+
 /// The long version, for releases: 10^7 rays on all processors, 90 minutes of processor time; 9 GB of patches.
 #[test]
 #[ignore = "takes more than an hour; run it with --ignored"]
