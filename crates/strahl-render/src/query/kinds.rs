@@ -15,7 +15,7 @@ pub(super) trait Query {
         None
     }
 
-    /// Whether the first hit on a primitive with these flags, if it has only one element, can be taken without further checks.
+    /// Whether the first hit on a primitive with these flags, if it has only one element, can be taken without a filter.
     #[inline(always)]
     fn is_unfiltered(&self, flags: u8) -> bool {
         Self::HAS_FAST_SEARCH && self.is_unfiltered_flat(flags)

@@ -182,7 +182,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// Whether hits of a block on this primitive need no further checks.
+    /// Whether hits of a block on this primitive need no filter.
     #[inline]
     fn is_unfiltered(&self, id: u32, curved: bool) -> bool {
         let prim = self.group.prims.at(id);
@@ -194,7 +194,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         prim.visible & self.search.class != 0 && unfiltered
     }
 
-    /// Takes a hit that needs no further checks.
+    /// Takes a hit that needs no filter.
     #[inline(always)]
     fn take(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
         // An earlier lane may have been closer.

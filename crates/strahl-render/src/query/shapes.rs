@@ -1,4 +1,4 @@
-//! Shapes whose hits need no further checks: most primitives of most scenes.
+//! Shapes whose hits need no filter: most primitives of most scenes.
 
 use super::kinds::Query;
 use crate::hit::{Hit, Origin};

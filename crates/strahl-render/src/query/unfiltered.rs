@@ -1,4 +1,4 @@
-//! Specialised searches of groups that have only triangles of meshes, or only spheres, whose hits need no further checks: the
+//! Specialised searches of groups that have only triangles of meshes, or only spheres, whose hits need no filter: the
 //! common case of large scenes, without the code for all others.
 
 use super::Search;
@@ -14,7 +14,7 @@ use strahl_geometry::blocks::Hits;
 use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, dispatch};
 
-/// A group all of whose primitives are tested in blocks of one kind, with hits that need no further checks (see
+/// A group all of whose primitives are tested in blocks of one kind, with hits that need no filter (see
 /// [`Query::is_unfiltered`]).
 #[derive(Clone, Copy)]
 pub(super) struct Unfiltered<'g> {

@@ -30,7 +30,7 @@ pub(super) struct GroupVisitor<'v, 'a, 's, Q> {
     pub(super) from_prim: u32,
     pub(super) base: u64,
     pub(super) t_max: f64,
-    /// Whether hits in blocks need no further checks (see [`RenderGroup::common`]).
+    /// Whether hits in blocks need no filter (see [`RenderGroup::common`]).
     pub(super) unfiltered: bool,
 }
 
@@ -85,7 +85,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 }
 
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
-    /// Tests a shape whose hits need no further checks.
+    /// Tests a shape whose hits need no filter.
     #[inline(always)]
     fn unfiltered_shape(&mut self, id: u32, index: u32, t_max: f64) -> f64 {
         let shape = UnfilteredShape::of(self.group, id, index, self.base);

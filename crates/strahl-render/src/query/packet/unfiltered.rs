@@ -1,4 +1,4 @@
-//! Tests of shapes whose hits need no further checks, for the rays of a packet.
+//! Tests of shapes whose hits need no filter, for the rays of a packet.
 
 use super::super::kinds::Query;
 use super::super::shapes::UnfilteredShape;
@@ -11,7 +11,7 @@ use strahl_geometry::{Csg, PacketRanges, PrimHit, Primitive, Scratch, Shape, Sur
 use strahl_math::{Interval, Ray};
 
 impl<Q: Query> Together<'_, '_, '_, Q> {
-    /// Tests a shape whose hits need no further checks for several rays.
+    /// Tests a shape whose hits need no filter for several rays.
     #[inline(never)]
     pub(super) fn unfiltered_shape(
         &mut self,
