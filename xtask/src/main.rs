@@ -12,6 +12,8 @@ mod bench_load;
 mod bench_objects;
 mod bench_parse;
 mod bench_scenes;
+#[cfg(test)]
+mod books;
 mod compare_pov;
 mod convert;
 mod differ;
