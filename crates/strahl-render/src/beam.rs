@@ -35,10 +35,10 @@ impl BeamMask {
 
     /// Tests the beam of a tile, then those of its parts.
     pub(crate) fn of(tile: Region, scene: &RenderScene, rays: &PrimaryRays) -> Self {
-        let looking = Looking { tile, scene, rays };
+        let culling = BeamCulling { tile, scene, rays };
         let mut seen = 0;
-        if looking.sees(0, 0, SQUARES) {
-            looking.look(0, 0, SQUARES, &mut seen);
+        if culling.sees(0, 0, SQUARES) {
+            culling.divide(0, 0, SQUARES, &mut seen);
         }
         Self {
             x: tile.x,
@@ -55,15 +55,15 @@ impl BeamMask {
     }
 }
 
-struct Looking<'a> {
+struct BeamCulling<'a> {
     tile: Region,
     scene: &'a RenderScene,
     rays: &'a PrimaryRays,
 }
 
-impl Looking<'_> {
+impl BeamCulling<'_> {
     /// Marks the squares of a part, `size` squares wide and high, that may see something, given that the part does.
-    fn look(&self, column: u32, row: u32, size: u32, seen: &mut u64) {
+    fn divide(&self, column: u32, row: u32, size: u32, seen: &mut u64) {
         if size == 1 {
             *seen |= 1 << (row * SQUARES + column);
             return;
@@ -76,7 +76,7 @@ impl Looking<'_> {
         let outline = half > 2 || sees.contains(&false);
         for ((column, row), _) in quarters.into_iter().zip(sees).filter(|(_, sees)| *sees) {
             if outline {
-                self.look(column, row, half, seen);
+                self.divide(column, row, half, seen);
             } else {
                 mark(column, row, half, seen);
             }

@@ -1,4 +1,4 @@
-//! What the parts of a picture will cost, from a look at the scene with few rays.
+//! What the parts of a picture will cost, from a survey of the scene with few rays.
 
 use crate::cost::PixelCost;
 use crate::film::Region;
@@ -88,15 +88,15 @@ pub fn estimate(
     measure: CostMeasure,
     progress: &dyn Progress,
 ) -> Result<CostMap, RenderError> {
-    let look = Look {
+    let survey = Survey {
         scene,
         options,
         progress,
         spacing: spacing.max(1),
     };
-    let seen = look.everywhere()?;
+    let seen = survey.everywhere()?;
     let (edges, more) = match antialiasing(options.sampling) {
-        Some((refinement, more)) if more > 0 => (look.edges(&seen, refinement)?, more),
+        Some((refinement, more)) if more > 0 => (survey.edges(&seen, refinement)?, more),
         _ => (Edges::default(), 0),
     };
     let measured: Vec<PixelCost> = seen.iter().flatten().map(|seen| seen.cost).collect();
@@ -106,7 +106,7 @@ pub fn estimate(
     let columns = map.columns();
     let block = |(x, y): (u32, u32)| (y / TILE * columns + x / TILE) as usize;
     let mut blocks = vec![Block::default(); map.costs.len()];
-    for (place, cost) in look.places().zip(&measured) {
+    for (place, cost) in survey.places().zip(&measured) {
         let block = &mut blocks[block(place)];
         block.rays += 1;
         block.sum += scale.of(cost);
@@ -131,13 +131,13 @@ pub fn estimate(
         block.sum += fine;
     }
     let all: (u64, u64) = blocks.iter().fold((0, 0), |(sum, rays), block| {
-        (sum + block.cost(look.spacing), rays + block.rays)
+        (sum + block.cost(survey.spacing), rays + block.rays)
     });
     for (cost, block) in map.costs.iter_mut().zip(&blocks) {
         // A block without a ray of its own, at the edge of a small picture, is an average one.
         let (sum, rays) = match block.rays {
             0 => all,
-            rays => (block.cost(look.spacing), rays),
+            rays => (block.cost(survey.spacing), rays),
         };
         *cost = (*cost * sum / rays.max(1)).max(1);
     }
@@ -222,7 +222,7 @@ struct Quiet {
     differs: bool,
 }
 
-/// What a look for edges has found.
+/// What a search for edges has found.
 #[derive(Default)]
 struct Edges {
     found: Vec<Edge>,
@@ -245,15 +245,15 @@ fn antialiasing(sampling: Sampling) -> Option<(Refinement, u64)> {
     }
 }
 
-/// A look at a scene.
-struct Look<'a> {
+/// A survey of a scene with few rays.
+struct Survey<'a> {
     scene: &'a RenderScene,
     options: &'a RenderOptions,
     progress: &'a dyn Progress,
     spacing: u32,
 }
 
-impl Look<'_> {
+impl Survey<'_> {
     fn columns(&self) -> u32 {
         self.options.width.div_ceil(self.spacing)
     }

@@ -26,8 +26,8 @@ pub(crate) fn paint<'s>(
     paint: &mut TexturePaint<'s>,
     paints: &mut KnownPaints<'s>,
 ) {
-    let look = &surface.resolved.look;
-    let material = &scene.materials[look.material.0 as usize];
+    let appearance = &surface.resolved.appearance;
+    let material = &scene.materials[appearance.material.0 as usize];
     let Some(texture) = material.texture_seen(surface.entering) else {
         paint.layers.clear();
         paint.stacks.clear();
@@ -41,7 +41,7 @@ pub(crate) fn paint<'s>(
         surface.n_shade = -surface.n_shade;
     }
     surface.n_smooth = Some(surface.n_shade);
-    let side = (look.material, surface.entering);
+    let side = (appearance.material, surface.entering);
     match paints.of(side) {
         Some(Known::Same(known)) => known.put(side, surface, paint),
         known => evaluate(scene, &texture.0, surface, hit, paint, known),
@@ -72,8 +72,8 @@ fn evaluate<'s>(
             direction: -surface.v,
         };
         let mut made = None;
-        let look = &surface.resolved.look;
-        let space = scene.texture_place(&mut place, hit, look, &mut made);
+        let appearance = &surface.resolved.appearance;
+        let space = scene.texture_place(&mut place, hit, appearance, &mut made);
         texture.layers_in(space, &place, eta, paint);
     }
     if !scene.settings.quality.is_full() {

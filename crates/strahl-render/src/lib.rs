@@ -12,6 +12,7 @@
 //! number of threads, order of tiles and split into regions.
 
 mod activity;
+mod appearance;
 mod area;
 mod attenuation;
 mod beam;
@@ -29,7 +30,6 @@ mod hit;
 mod layers;
 mod light_sets;
 mod lit;
-mod look;
 mod media;
 mod names;
 mod objects;

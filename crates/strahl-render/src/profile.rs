@@ -87,7 +87,7 @@ impl Profile {
 impl Element {
     fn of(scene: &RenderScene, id: u64) -> Self {
         let at = scene.locate(id);
-        let look = at.group.look(at.prim, at.element);
+        let appearance = at.group.appearance(at.prim, at.element);
         let primitive = match at.group.prims.at(at.prim).kind() {
             PrimKind::Triangle(..) => "triangle",
             PrimKind::Sphere(_) => "sphere",
@@ -97,8 +97,8 @@ impl Element {
             PrimKind::Instance(_) => "instance",
         };
         Self {
-            object: look.object,
-            material: look.material.0,
+            object: appearance.object,
+            material: appearance.material.0,
             primitive,
         }
     }

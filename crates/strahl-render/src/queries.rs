@@ -66,11 +66,11 @@ impl RenderScene {
     /// If the hit is of another scene.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> HitSurface {
         let at = self.locate(hit.id);
-        let look = at.group.look(at.prim, at.element);
+        let appearance = at.group.appearance(at.prim, at.element);
         let point = self.surface_at(ray, hit);
         HitSurface {
-            object: look.object,
-            material: look.material.0,
+            object: appearance.object,
+            material: appearance.material.0,
             position: point.position,
             normal: point.n_geom,
             shading_normal: point.n_shade,
@@ -283,9 +283,10 @@ struct Finder<'a> {
 impl Visitor for Finder<'_> {
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
         if self.last.is_none_or(|(last, _)| id > last)
-            && let Some(look) = self.solids.all[id as usize].look_at(self.scene, self.point)
+            && let Some(appearance) =
+                self.solids.all[id as usize].appearance_at(self.scene, self.point)
         {
-            self.last = Some((id, look.object));
+            self.last = Some((id, appearance.object));
         }
         t_max
     }

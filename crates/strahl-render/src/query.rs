@@ -314,7 +314,7 @@ impl<Q: Query> Search<'_, '_, Q> {
 
 impl RenderScene {
     /// Whether the material of an element transmits light.
-    pub(crate) fn transmits(&self, look: crate::look::Look) -> bool {
-        crate::compile::material_transmits(&self.materials[look.material.0 as usize])
+    pub(crate) fn transmits(&self, appearance: crate::appearance::Appearance) -> bool {
+        crate::compile::material_transmits(&self.materials[appearance.material.0 as usize])
     }
 }

@@ -1,7 +1,7 @@
 //! From a hit to its surface, and to the place where the texture of the surface is evaluated.
 
+use crate::appearance::{Appearance, UvMapping};
 use crate::hit::Hit;
-use crate::look::{Look, UvMapping};
 use crate::prim::PrimKind;
 use crate::scene::{RenderGroup, RenderScene};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint};
@@ -16,7 +16,7 @@ pub(crate) struct Resolved {
     pub(crate) point: SurfacePoint,
     /// The same point in the innermost space, if that is not the world's.
     pub(crate) local: Option<LocalPoint>,
-    pub(crate) look: Look,
+    pub(crate) appearance: Appearance,
     /// Where the elements of the innermost instance begin; 0 in the world.
     pub(crate) space: u64,
 }
@@ -26,10 +26,10 @@ impl Resolved {
     pub(crate) const UNKNOWN: Self = Self {
         point: SurfacePoint::UNKNOWN,
         local: None,
-        look: Look {
+        appearance: Appearance {
             object: 0,
             material: MaterialId(0),
-            texture_space: Look::NO_SPACE,
+            texture_space: Appearance::NO_SPACE,
             body: 0,
             hollow: false,
             uv: UvMapping::Off,
@@ -83,9 +83,9 @@ impl RenderScene {
             return;
         }
         let element = (hit.id - world.first_id(prim)) as u32;
-        out.look = world.look(prim, element);
+        out.appearance = world.appearance(prim, element);
         (out.local, out.space) = (None, 0);
-        let uv = self.wants_uv(&out.look, uv);
+        let uv = self.wants_uv(&out.appearance, uv);
         world.store_surface(prim, ray, hit, element, uv, &mut out.point);
         if uv {
             out.point.uv = world.texture_uv(prim, hit, element, &out.point);
@@ -94,8 +94,10 @@ impl RenderScene {
 
     /// Whether texture coordinates are wanted for a material.
     #[inline]
-    fn wants_uv(&self, look: &Look, uv: Uv) -> bool {
-        uv == Uv::Always || look.uv != UvMapping::Off || self.uses_uv[look.material.0 as usize]
+    fn wants_uv(&self, appearance: &Appearance, uv: Uv) -> bool {
+        uv == Uv::Always
+            || appearance.uv != UvMapping::Off
+            || self.uses_uv[appearance.material.0 as usize]
     }
 
     /// [`RenderScene::resolve`] for a hit within an instance.
@@ -109,8 +111,8 @@ impl RenderScene {
     ) {
         let mut made = None;
         let (at, to_world) = self.locate_with_map(hit.id, &mut made);
-        out.look = at.group.look(at.prim, at.element);
-        let uv = self.wants_uv(&out.look, uv);
+        out.appearance = at.group.appearance(at.prim, at.element);
+        let uv = self.wants_uv(&out.appearance, uv);
         let local_ray = match to_world {
             None => *ray,
             Some(m) => {
@@ -150,11 +152,11 @@ impl RenderScene {
         &'m self,
         place: &mut TexturePoint,
         hit: &Hit,
-        look: &Look,
+        appearance: &Appearance,
         made: &'m mut Option<Transform>,
     ) -> Option<&'m Transform> {
-        let space = self.texture_space(hit, look, made);
-        if look.uv == UvMapping::Off {
+        let space = self.texture_space(hit, appearance, made);
+        if appearance.uv == UvMapping::Off {
             return space;
         }
         let in_object = match space {
@@ -162,17 +164,17 @@ impl RenderScene {
             Some(space) => space.point_to_object(place.position),
         };
         *place = place.on_surface(in_object);
-        space.filter(|_| look.uv == UvMapping::Moved)
+        space.filter(|_| appearance.uv == UvMapping::Moved)
     }
 
     #[inline]
     fn texture_space<'m>(
         &'m self,
         hit: &Hit,
-        look: &Look,
+        appearance: &Appearance,
         made: &'m mut Option<Transform>,
     ) -> Option<&'m Transform> {
-        let to_group = self.texture_spaces.get(look.texture_space as usize);
+        let to_group = self.texture_spaces.get(appearance.texture_space as usize);
         if self.is_in_world(hit.id) {
             return to_group;
         }
@@ -224,7 +226,7 @@ impl RenderScene {
             direction,
         };
         let mut made = None;
-        let space = self.texture_place(&mut place, hit, &resolved.look, &mut made);
+        let space = self.texture_place(&mut place, hit, &resolved.appearance, &mut made);
         if caustics > 0.0 {
             return texture.gathered_attenuation(space, &place, caustics);
         }

@@ -1,7 +1,7 @@
+use crate::appearance::{Appearance, Appearances};
 use crate::blocks::Blocks;
 use crate::first_ids::FirstIds;
 use crate::light_sets::LightSets;
-use crate::look::{Look, Looks};
 use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
@@ -299,7 +299,7 @@ impl RenderScene {
     /// The object an element belongs to; the number must come from a hit in this scene.
     pub(crate) fn object_of(&self, id: u64) -> u32 {
         let at = self.locate(id);
-        at.group.look(at.prim, at.element).object
+        at.group.appearance(at.prim, at.element).object
     }
 
     /// The line of the scene file that made the triangle with this number, if its mesh stores it.
@@ -317,18 +317,18 @@ impl RenderScene {
 impl RenderGroup {
     /// Object and material of an element of a primitive that is no instance.
     #[inline]
-    pub(crate) fn look(&self, prim: u32, element: u32) -> Look {
+    pub(crate) fn appearance(&self, prim: u32, element: u32) -> Appearance {
         match self.prims.at(prim).kind() {
-            PrimKind::Triangle(mesh, _) => self.meshes[mesh as usize].look,
-            PrimKind::Sphere(number) => self.spheres.look(number),
+            PrimKind::Triangle(mesh, _) => self.meshes[mesh as usize].appearance,
+            PrimKind::Sphere(number) => self.spheres.appearance(number),
             PrimKind::Shape(index) | PrimKind::Placed(index) => {
                 let used = &self.shapes[index as usize];
-                match (&used.look, &used.shape) {
-                    (Looks::One(look), _) => *look,
-                    (Looks::Leaves { looks, .. }, Shape::Csg(csg)) => {
-                        looks[csg.leaf_tag(csg.leaf_of(element).0) as usize]
+                match (&used.appearance, &used.shape) {
+                    (Appearances::One(appearance), _) => *appearance,
+                    (Appearances::Leaves { appearances, .. }, Shape::Csg(csg)) => {
+                        appearances[csg.leaf_tag(csg.leaf_of(element).0) as usize]
                     }
-                    (Looks::Leaves { looks, .. }, _) => looks[0],
+                    (Appearances::Leaves { appearances, .. }, _) => appearances[0],
                 }
             }
             PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),

@@ -175,7 +175,7 @@ impl Intersector<'_> {
             self.slot.enter_for(Phase::Texture, hit.id);
             let scene = self.scene;
             scene.resolve(ray, Some(from), hit, Uv::IfTextured, &mut resolved);
-            let id = resolved.look.material;
+            let id = resolved.appearance.material;
             let material = &self.scene.materials[id.0 as usize];
             let entering = resolved.point.n_geom.dot(ray.direction) < 0.0;
             let filter = match material.texture_seen(entering) {
@@ -187,7 +187,7 @@ impl Intersector<'_> {
                 }
             };
             visible *= filter;
-            let own = resolved.look.medium(material, resolved.space);
+            let own = resolved.appearance.medium(material, resolved.space);
             let stretch = (hit.t - entered_at) * ray.direction.length();
             let leaves = match Crossing::of(material) {
                 Crossing::BySide => !entering,
@@ -200,7 +200,7 @@ impl Intersector<'_> {
             };
             visible *= absorbed;
             tell(Kept {
-                surface: Some((hit, resolved.look.object)),
+                surface: Some((hit, resolved.appearance.object)),
                 filter,
                 absorbed,
             });

@@ -1,4 +1,4 @@
-use crate::look::{Look, LookRun};
+use crate::appearance::{Appearance, AppearanceRun};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
 use strahl_accel::{BLOCK, NO_PRIMITIVE};
@@ -33,7 +33,7 @@ impl PlainSphere {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spheres {
     kept: Kept,
-    looks: RunList<LookRun>,
+    appearances: RunList<AppearanceRun>,
 }
 
 #[derive(Clone, Debug)]
@@ -51,11 +51,11 @@ impl Default for Kept {
 
 impl Spheres {
     /// Appends a sphere and returns its number.
-    pub(crate) fn push(&mut self, sphere: PlainSphere, look: Look) -> u32 {
-        let number = self.looks.len() as u32;
+    pub(crate) fn push(&mut self, sphere: PlainSphere, appearance: Appearance) -> u32 {
+        let number = self.appearances.len() as u32;
         if let Kept::ByNumber(list) = &mut self.kept {
             list.push(sphere);
-            self.looks.push(look);
+            self.appearances.push(appearance);
         }
         number
     }
@@ -79,8 +79,8 @@ impl Spheres {
 
     /// Object and material of a sphere.
     #[inline]
-    pub(crate) fn look(&self, number: u32) -> Look {
-        self.looks.at(number)
+    pub(crate) fn appearance(&self, number: u32) -> Appearance {
+        self.appearances.at(number)
     }
 
     /// The spheres without their coordinates, if the blocks made for these slots contain all of them; `place` gives the index of a block
@@ -91,7 +91,7 @@ impl Spheres {
         prims: &RunList<Prim>,
         place: impl Fn(usize) -> usize,
     ) -> Self {
-        let mut places = vec![u32::MAX; self.looks.len()];
+        let mut places = vec![u32::MAX; self.appearances.len()];
         for (slot, id) in slots
             .iter()
             .enumerate()
@@ -102,13 +102,13 @@ impl Spheres {
                 places[number as usize] = place as u32;
             }
         }
-        let looks = self.looks.completed();
+        let appearances = self.appearances.completed();
         // Spheres whose bounds don't fit f32 are in no block.
         let kept = match places.contains(&u32::MAX) {
             true => self.kept,
             false => Kept::InBlocks(places),
         };
-        Self { kept, looks }
+        Self { kept, appearances }
     }
 
     /// Bytes they occupy beside the blocks.
@@ -117,6 +117,6 @@ impl Spheres {
             Kept::ByNumber(list) => size_of_val(list.as_slice()),
             Kept::InBlocks(places) => size_of_val(places.as_slice()),
         };
-        kept + self.looks.bytes()
+        kept + self.appearances.bytes()
     }
 }

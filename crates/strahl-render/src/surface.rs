@@ -154,9 +154,12 @@ impl<'s> Surface<'s> {
         media: &MediaArena,
     ) {
         let Resolved {
-            point, look, space, ..
+            point,
+            appearance,
+            space,
+            ..
         } = &self.resolved;
-        let material = &scene.materials[look.material.0 as usize];
+        let material = &scene.materials[appearance.material.0 as usize];
         self.v = -(branch.ray.direction * per_speed);
         self.entering = point.n_geom.dot(self.v) >= 0.0;
         let side = if self.entering { 1.0 } else { -1.0 };
@@ -167,7 +170,7 @@ impl<'s> Surface<'s> {
         let n_shade = n_shade * side;
         (self.n_geom, self.n_shade, self.n_refract) = (point.n_geom * side, n_shade, n_shade);
         self.n_smooth = None;
-        self.own = look.medium(material, *space);
+        self.own = appearance.medium(material, *space);
         self.thin = material.thin;
         // A thin sheet has the same medium on both sides and is met from outside.
         self.inside = !self.thin
@@ -187,11 +190,11 @@ impl<'s> Surface<'s> {
         };
         let index = |id| index_of(scene, id, branch.part);
         (self.eta_1, self.eta_2) = (index(self.medium_1), index(self.medium_2));
-        if self.painted != Some((look.material, self.entering)) {
+        if self.painted != Some((appearance.material, self.entering)) {
             self.painted = None;
             material.store_at(point.uv, &mut self.material);
         }
-        self.lit = scene.lit(hit.id, look.object);
+        self.lit = scene.lit(hit.id, appearance.object);
         self.shows_lights = true;
     }
 
@@ -443,7 +446,7 @@ impl<'s> Surface<'s> {
         let eta = self.eta_1 / self.eta_2;
         !self.thin
             && eta > 1.0
-            && scene.transmits(self.resolved.look)
+            && scene.transmits(self.resolved.appearance)
             && self.refract(self.n_refract, eta).is_none()
     }
 
@@ -459,8 +462,8 @@ impl<'s> Surface<'s> {
         let finish = &self.material.finish;
         HitReport {
             hit: *hit,
-            object: self.resolved.look.object,
-            material: self.resolved.look.material,
+            object: self.resolved.appearance.object,
+            material: self.resolved.appearance.material,
             line: scene.face_line(hit.id),
             shading,
             position: self.resolved.point.position,

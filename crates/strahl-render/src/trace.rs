@@ -335,7 +335,8 @@ impl<'s> TreeTracer<'s> {
     }
 
     fn model_of(&self, surface: &Surface<'_>) -> ShadingModel {
-        let material = &self.intersector.scene.materials[surface.resolved.look.material.0 as usize];
+        let material =
+            &self.intersector.scene.materials[surface.resolved.appearance.material.0 as usize];
         self.settings
             .force_shading
             .or(material.model)

@@ -1,7 +1,7 @@
-//! What primitives refer to: shapes, meshes and instances, with how they look.
+//! What primitives refer to: shapes, meshes and instances, with their appearance.
 
+use crate::appearance::{Appearance, Appearances};
 use crate::light_sets::Lit;
-use crate::look::{Look, Looks};
 use std::sync::Arc;
 use strahl_geometry::{Primitive, Shape, TriangleMesh};
 use strahl_math::{Aabb, Transform};
@@ -11,7 +11,7 @@ pub(crate) struct ShapeUse {
     pub(crate) shape: Shape,
     pub(crate) transform: Option<Box<Transform>>,
     /// Object and material; CSG trees have one per leaf.
-    pub(crate) look: Looks,
+    pub(crate) appearance: Appearances,
     /// Where its inside is, if that is not what the surface says.
     pub(crate) inside: Option<Box<Inside>>,
 }
@@ -41,7 +41,7 @@ impl Inside {
 #[derive(Clone, Debug)]
 pub(crate) struct MeshUse {
     pub(crate) mesh: Arc<TriangleMesh>,
-    pub(crate) look: Look,
+    pub(crate) appearance: Appearance,
 }
 
 #[derive(Clone, Debug)]

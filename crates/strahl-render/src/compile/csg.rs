@@ -5,7 +5,7 @@ use super::flatten::{FlatGroup, Pass, shape_at, visible};
 use super::inherit::Todo;
 use super::inside;
 use super::operation::{combine, wrong_count};
-use crate::look::{Look, Looks};
+use crate::appearance::{Appearance, Appearances};
 use crate::prim::Prim;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, Primitive};
@@ -15,17 +15,17 @@ impl Pass {
     /// A CSG tree becomes one primitive whose leaves know their objects and materials.
     pub(super) fn csg(&mut self, todo: &Todo<'_>, group: &mut FlatGroup) {
         let errors_before = self.errors.len();
-        let mut looks = Vec::new();
-        let Some(node) = self.csg_node(todo, &mut looks) else {
+        let mut appearances = Vec::new();
+        let Some(node) = self.csg_node(todo, &mut appearances) else {
             return;
         };
         if self.errors.len() > errors_before {
             return;
         }
-        let flags = looks
+        let flags = appearances
             .iter()
-            .fold(0, |f, look| f | self.flags(todo, look.material));
-        let looks = Looks::of_leaves(looks, todo.body.unwrap_or(0));
+            .fold(0, |f, appearance| f | self.flags(todo, appearance.material));
+        let appearances = Appearances::of_leaves(appearances, todo.body.unwrap_or(0));
         let visible = visible(todo.visibility);
         let filled = flags & Prim::FILLED != 0;
         let mut inside = filled
@@ -41,7 +41,9 @@ impl Pass {
         for part in parts {
             match Csg::try_new(part) {
                 Err(error) => return self.invalid(todo, "CSG object", &error),
-                Ok(csg) => group.add_shape(Arc::new(csg).into(), looks.clone(), visible, flags),
+                Ok(csg) => {
+                    group.add_shape(Arc::new(csg).into(), appearances.clone(), visible, flags)
+                }
             }
             if let (Some(inside), Some(used)) = (inside.take(), group.shapes.last_mut()) {
                 used.inside = Some(Box::new(inside));
@@ -51,7 +53,7 @@ impl Pass {
     }
 
     /// Translates a tree of objects, bottom-up with a stack of its own.
-    fn csg_node(&mut self, root: &Todo<'_>, looks: &mut Vec<Look>) -> Option<CsgNode> {
+    fn csg_node(&mut self, root: &Todo<'_>, appearances: &mut Vec<Appearance>) -> Option<CsgNode> {
         enum Step<'a> {
             Visit(Box<Todo<'a>>),
             Combine(CsgOp, usize),
@@ -96,8 +98,8 @@ impl Pass {
                             if let Err(error) = shape.validate() {
                                 self.invalid(&todo, shape.kind(), &error);
                             }
-                            looks.push(self.look(&todo, shape.kind()));
-                            let tag = looks.len() as u32 - 1;
+                            appearances.push(self.appearance(&todo, shape.kind()));
+                            let tag = appearances.len() as u32 - 1;
                             let transform =
                                 (!todo.transform.is_identity()).then(|| Box::new(todo.transform));
                             let here = shape_at(shape, &todo.transform);

@@ -2,9 +2,9 @@ use super::bounds::{Bound, bounded};
 use super::inherit::Todo;
 use super::materials::{MaterialTable, material_fills, material_problem, material_transmits};
 use super::operation::wrong_count;
+use crate::appearance::{Appearance, Appearances, UvMapping};
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
-use crate::look::{Look, Looks, UvMapping};
 use crate::objects::{ObjectInfo, Objects};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
@@ -32,18 +32,26 @@ pub(super) struct FlatGroup {
 
 impl FlatGroup {
     /// Adds a shape in the group's own space.
-    pub(super) fn add_shape(&mut self, shape: Shape, look: Looks, visible: u8, flags: u8) {
+    pub(super) fn add_shape(
+        &mut self,
+        shape: Shape,
+        appearance: Appearances,
+        visible: u8,
+        flags: u8,
+    ) {
         let plain = match &shape {
             Shape::Sphere(sphere) => PlainSphere::of(sphere),
             _ => None,
         };
-        let kind = match (plain, look) {
-            (Some(sphere), Looks::One(look)) => PrimKind::Sphere(self.spheres.push(sphere, look)),
-            (_, look) => {
+        let kind = match (plain, appearance) {
+            (Some(sphere), Appearances::One(appearance)) => {
+                PrimKind::Sphere(self.spheres.push(sphere, appearance))
+            }
+            (_, appearance) => {
                 self.shapes.push(ShapeUse {
                     shape,
                     transform: None,
-                    look,
+                    appearance,
                     inside: None,
                 });
                 PrimKind::Shape(self.shapes.len() as u32 - 1)
@@ -247,7 +255,7 @@ impl Pass {
     }
 
     /// Registers object and material.
-    pub(super) fn look(&mut self, todo: &Todo<'_>, kind: &'static str) -> Look {
+    pub(super) fn appearance(&mut self, todo: &Todo<'_>, kind: &'static str) -> Appearance {
         let material = self.flat.materials.id(todo.material);
         if self.checked.insert(material)
             && let Some(problem) = material_problem(self.flat.materials.get(material))
@@ -265,7 +273,7 @@ impl Pass {
         let spaces = &mut self.flat.texture_spaces;
         let textured = self.flat.materials.get(material).texture.is_some();
         let texture_space = if !textured || todo.material_space.is_identity() {
-            Look::NO_SPACE
+            Appearance::NO_SPACE
         } else {
             // Neighbours, such as the parts of a union, often have the same one.
             if spaces.last() != Some(&todo.material_space) {
@@ -273,7 +281,7 @@ impl Pass {
             }
             spaces.len() as u32 - 1
         };
-        Look {
+        Appearance {
             object,
             material,
             texture_space,
@@ -336,8 +344,8 @@ impl Pass {
             self.invalid(todo, shape.kind(), &error);
             return;
         }
-        let look = self.look(todo, shape.kind());
-        let flags = self.flags(todo, look.material);
+        let appearance = self.appearance(todo, shape.kind());
+        let flags = self.flags(todo, appearance.material);
         let visible = visible(todo.visibility);
         let identity = todo.transform.is_identity();
         // Triangles of meshes are seen by all rays.
@@ -358,7 +366,7 @@ impl Pass {
             let count = mesh.triangle_count();
             group.meshes.push(MeshUse {
                 mesh: Arc::clone(mesh),
-                look,
+                appearance,
             });
             for triangle in 0..count {
                 let kind = PrimKind::Triangle(index, triangle);
@@ -367,13 +375,13 @@ impl Pass {
             return;
         }
         if let Some(baked) = baked {
-            group.add_shape(baked, Looks::One(look), visible, flags);
+            group.add_shape(baked, Appearances::One(appearance), visible, flags);
             return;
         }
         group.shapes.push(ShapeUse {
             shape: shape.clone(),
             transform: Some(Box::new(todo.transform)),
-            look: Looks::One(look),
+            appearance: Appearances::One(appearance),
             inside: None,
         });
         let kind = PrimKind::Placed(group.shapes.len() as u32 - 1);

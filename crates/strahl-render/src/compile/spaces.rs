@@ -1,6 +1,6 @@
 use super::flatten::{Flat, FlatGroup};
+use crate::appearance::Appearances;
 use crate::light_sets::Lit;
-use crate::look::Looks;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
 use crate::uses::InstanceUse;
@@ -148,12 +148,12 @@ fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
         let anchor = *anchor.get_or_insert_with(|| shape.bounds().center());
         let home = Transform::translate(-anchor);
         let shape = shape.baked(&home).unwrap_or_else(|| shape.into_owned());
-        let look = match prim.kind() {
-            PrimKind::Shape(index) => group.shapes[index as usize].look.clone(),
-            PrimKind::Sphere(number) => Looks::One(group.spheres.look(number)),
+        let appearance = match prim.kind() {
+            PrimKind::Shape(index) => group.shapes[index as usize].appearance.clone(),
+            PrimKind::Sphere(number) => Appearances::One(group.spheres.appearance(number)),
             _ => continue,
         };
-        inner.add_shape(shape, look, prim.visible, prim.flags);
+        inner.add_shape(shape, appearance, prim.visible, prim.flags);
         if let PrimKind::Shape(index) = prim.kind()
             && let Some(inside) = &group.shapes[index as usize].inside
             && let Some(used) = inner.shapes.last_mut()

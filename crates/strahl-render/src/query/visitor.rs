@@ -121,7 +121,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         if Q::WATCHES && !matches!(prim.kind(), PrimKind::Instance(_)) {
             self.search.query.tell(WalkEvent::Test {
                 id: self.base + first,
-                object: self.group.look(id, 0).object,
+                object: self.group.appearance(id, 0).object,
                 closest: self.t_max.is_finite().then_some(self.t_max),
                 found: self.t_max < t_max,
             });
@@ -257,8 +257,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             prim.flags & Prim::FILTERED == 0 || self.exists(id, prim, &hit, found.surface, front);
         let mixed = prim.flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
         let wanted = !mixed || {
-            let look = self.group.look(id, found.surface.element);
-            let transmits = self.search.scene.transmits(look);
+            let appearance = self.group.appearance(id, found.surface.element);
+            let transmits = self.search.scene.transmits(appearance);
             self.search.query.wants_hit(transmits)
         };
         (exists && wanted).then(|| self.search.query.take(hit, t_max))
@@ -323,8 +323,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     }
 
     fn exists_there(&self, id: u32, hit: &Hit, surface: SurfaceId) -> bool {
-        let look = self.group.look(id, surface.element);
-        let material = &self.search.scene.materials[look.material.0 as usize];
+        let appearance = self.group.appearance(id, surface.element);
+        let material = &self.search.scene.materials[appearance.material.0 as usize];
         let masked = material.is_masked();
         let mut point = Resolved::UNKNOWN.point;
         self.group

@@ -71,18 +71,18 @@ fn place<'s>(
     paints: &KnownPaints<'s>,
 ) -> Option<Place<'s>> {
     let Point { surface, hit, .. } = &points[lane];
-    let look = &surface.resolved.look;
-    if !paints.gains_together((look.material, surface.entering)) {
+    let appearance = &surface.resolved.appearance;
+    if !paints.gains_together((appearance.material, surface.entering)) {
         return None;
     }
-    let material = &scene.materials[look.material.0 as usize];
+    let material = &scene.materials[appearance.material.0 as usize];
     let texture: &'s Texture = &material.texture_seen(surface.entering)?.0;
     let mut point = TexturePoint {
         uv: surface.resolved.point.uv,
         ..TexturePoint::in_space(surface.resolved.point.position)
     };
     let mut made = None;
-    if let Some(space) = scene.texture_place(&mut point, hit, look, &mut made) {
+    if let Some(space) = scene.texture_place(&mut point, hit, appearance, &mut made) {
         point.position = space.point_to_object(point.position);
     }
     Some(Place {

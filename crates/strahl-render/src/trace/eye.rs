@@ -1,6 +1,6 @@
 //! What the eye is inside of.
 
-use crate::look::Look;
+use crate::appearance::Appearance;
 use crate::media::Medium;
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{RenderGroup, RenderScene};
@@ -79,22 +79,22 @@ impl Eye {
 
 impl Filled {
     fn medium_at(&self, scene: &RenderScene, place: DVec3) -> Option<Medium> {
-        let look = self.look_at(scene, place)?;
-        let material = &scene.materials[look.material.0 as usize];
-        Some(look.medium(material, self.space))
+        let appearance = self.appearance_at(scene, place)?;
+        let material = &scene.materials[appearance.material.0 as usize];
+        Some(appearance.medium(material, self.space))
     }
 
     /// Object and material, if the place is inside.
-    pub(crate) fn look_at(&self, scene: &RenderScene, place: DVec3) -> Option<Look> {
+    pub(crate) fn appearance_at(&self, scene: &RenderScene, place: DVec3) -> Option<Appearance> {
         let group = &scene.groups[self.group as usize];
         let place = match &self.to_world {
             None => place,
             Some(map) => map.point_to_object(place),
         };
-        let (look, contains) = match group.prims.at(self.prim).kind() {
+        let (appearance, contains) = match group.prims.at(self.prim).kind() {
             PrimKind::Sphere(number) => {
                 let sphere = group.spheres.get(number, group.blocks.spheres());
-                (group.spheres.look(number), sphere.contains(place))
+                (group.spheres.appearance(number), sphere.contains(place))
             }
             PrimKind::Shape(index) | PrimKind::Placed(index) => {
                 let used = &group.shapes[index as usize];
@@ -105,11 +105,11 @@ impl Filled {
                         holds(&used.shape, own.map_or(place, |m| m.point_to_object(place)))
                     }
                 };
-                (*used.look.of_inside()?, contains)
+                (*used.appearance.of_inside()?, contains)
             }
             PrimKind::Triangle(..) | PrimKind::Instance(_) => return None,
         };
-        contains.then_some(look)
+        contains.then_some(appearance)
     }
 }
 

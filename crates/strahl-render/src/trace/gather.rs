@@ -88,7 +88,7 @@ impl<'s> TreeTracer<'s> {
             position: surface.resolved.point.position,
             n_geom: surface.n_geom,
             n_shade: surface.n_shade,
-            material: surface.resolved.look.material,
+            material: surface.resolved.appearance.material,
             diffuse: surface.material.finish.diffuse,
             reflection: split.kr,
             transmission: split.kt * split.fade,

@@ -247,8 +247,8 @@ impl<'s> TreeTracer<'s> {
             distance: point.length,
             position: surface.resolved.point.position,
             normal: surface.n_shade,
-            object: surface.resolved.look.object,
-            material: surface.resolved.look.material,
+            object: surface.resolved.appearance.object,
+            material: surface.resolved.appearance.material,
         };
         if point.branch.kind == RayKind::Primary {
             self.first = Some(first);

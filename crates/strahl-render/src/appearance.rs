@@ -1,38 +1,40 @@
-//! Object and material of an element.
+//! The appearance of an element: its object, its material, and where its texture lies.
 
 use crate::media::{Body, Crossing, Medium};
 use crate::runs::Run;
 use std::sync::Arc;
 use strahl_shade::{Material, MaterialId};
 
-/// Object and material of an element.
+/// The appearance of the elements of a shape.
 #[derive(Clone, Debug)]
-pub(crate) enum Looks {
-    One(Look),
+pub(crate) enum Appearances {
+    One(Appearance),
     /// Of a CSG tree.
     Leaves {
         /// Indexed by the tags of the leaves.
-        looks: Arc<[Look]>,
+        appearances: Arc<[Appearance]>,
         /// The leaf that is filled with what the whole is filled with, if there is one.
         whole: Option<u32>,
     },
 }
 
-impl Looks {
+impl Appearances {
     /// Of a tree that is a part of this body.
-    pub(crate) fn of_leaves(looks: Vec<Look>, body: u32) -> Self {
-        let whole = looks.iter().position(|look| look.body == body);
+    pub(crate) fn of_leaves(appearances: Vec<Appearance>, body: u32) -> Self {
+        let whole = appearances
+            .iter()
+            .position(|appearance| appearance.body == body);
         Self::Leaves {
-            looks: looks.into(),
+            appearances: appearances.into(),
             whole: whole.map(|leaf| leaf as u32),
         }
     }
 
-    /// The look that says what is inside of the whole.
-    pub(crate) fn of_inside(&self) -> Option<&Look> {
+    /// The appearance of the leaf that says what is inside of the whole.
+    pub(crate) fn of_inside(&self) -> Option<&Appearance> {
         match self {
-            Self::One(look) => Some(look),
-            Self::Leaves { looks, whole } => looks.get((*whole)? as usize),
+            Self::One(appearance) => Some(appearance),
+            Self::Leaves { appearances, whole } => appearances.get((*whole)? as usize),
         }
     }
 }
@@ -49,11 +51,13 @@ pub(crate) enum UvMapping {
     Moved,
 }
 
+/// The object and the material of an element, and what else says how it is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Look {
+pub(crate) struct Appearance {
+    /// Number of the object.
     pub(crate) object: u32,
     pub(crate) material: MaterialId,
-    /// Index in the list of texture spaces, or [`Look::NO_SPACE`].
+    /// Index in the list of texture spaces, or [`Appearance::NO_SPACE`].
     pub(crate) texture_space: u32,
     /// The number of the body that it is a part of: what is filled with one medium.
     pub(crate) body: u32,
@@ -63,7 +67,7 @@ pub(crate) struct Look {
     pub(crate) uv: UvMapping,
 }
 
-impl Look {
+impl Appearance {
     /// The texture's space is the group's.
     pub(crate) const NO_SPACE: u32 = u32::MAX;
 
@@ -83,21 +87,21 @@ impl Look {
 
 /// Objects of one material: parts of one body, or bodies of one part each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LookRun {
-    first: Look,
+pub(crate) struct AppearanceRun {
+    first: Appearance,
     /// From the body of one to that of the next.
     bodies: u32,
 }
 
-impl Run for LookRun {
-    type Item = Look;
+impl Run for AppearanceRun {
+    type Item = Appearance;
 
-    fn of(item: Look) -> Self {
+    fn of(item: Appearance) -> Self {
         let (first, bodies) = (item, 0);
         Self { first, bodies }
     }
 
-    fn goes_on(&mut self, len: u32, item: &Look) -> bool {
+    fn goes_on(&mut self, len: u32, item: &Appearance) -> bool {
         if len == 1 {
             self.bodies = item.body.wrapping_sub(self.first.body);
         }
@@ -105,9 +109,9 @@ impl Run for LookRun {
     }
 
     #[inline(always)]
-    fn item(&self, place: u32) -> Look {
+    fn item(&self, place: u32) -> Appearance {
         let body = self.bodies.wrapping_mul(place);
-        Look {
+        Appearance {
             object: self.first.object.wrapping_add(place),
             body: self.first.body.wrapping_add(body),
             ..self.first
