@@ -12,6 +12,7 @@ use crate::scene::{RenderGroup, RenderScene};
 use crate::uses::InstanceUse;
 pub use kinds::WalkEvent;
 use kinds::{Any, Closest, Query, Transmitting, Watched};
+pub(crate) use packet::PACKET_MIN;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator, TraversalStats, Visitor};
 use strahl_geometry::{PacketTree, RayShear, Scratch};

@@ -12,7 +12,7 @@ use strahl_accel::Bvh2;
 use strahl_math::{Aabb, Transform};
 
 /// Up to this many operands the boxes are tested one by one.
-const FEW: usize = 8;
+const LIST_MAX: usize = 8;
 
 impl Csg {
     /// Compiles a tree.
@@ -302,7 +302,7 @@ impl Compiler {
                 operands.extend(proto.operands.iter().copied().filter(|o| !is_core(o)));
             }
             let rest = operands.get(first + core..).unwrap_or_default();
-            let hierarchy = (rest.len() > FEW).then(|| {
+            let hierarchy = (rest.len() > LIST_MAX).then(|| {
                 let bounds = rest.iter().filter_map(|i| boxes.get(*i as usize));
                 Box::new(Bvh2::build(&bounds.map(|b| b.0).collect::<Vec<_>>()))
             });

@@ -6,8 +6,8 @@ use strahl_accel::PACKET;
 use strahl_math::Ray;
 use strahl_shade::Color;
 
-/// Rays that fill a packet and those beyond; `None` where the camera sees nothing.
-pub(crate) type FewRays = ArrayVec<Option<Ray>, { 2 * PACKET }>;
+/// The rays of a bundle that come next, at most as many as fill a packet and those beyond; `None` where the camera sees nothing.
+pub(crate) type NextRays = ArrayVec<Option<Ray>, { 2 * PACKET }>;
 
 /// The rays of a position in the picture, and what they have seen so far. They are made a few at a time, since their number may
 /// depend on what the first ones see.
@@ -65,10 +65,10 @@ impl RayBundle {
     /// Traces the rays one by one: `more` appends the rays that come next, and none at the end.
     pub(super) fn traced(
         mut self,
-        mut more: impl FnMut(&mut Self, &mut FewRays),
+        mut more: impl FnMut(&mut Self, &mut NextRays),
         mut trace: impl FnMut(&Ray) -> Color,
     ) -> Self {
-        let mut rays = FewRays::new();
+        let mut rays = NextRays::new();
         loop {
             more(&mut self, &mut rays);
             if rays.is_empty() {

@@ -1,6 +1,6 @@
 mod fours;
 
-use super::bundle::{FewRays, RayBundle};
+use super::bundle::{NextRays, RayBundle};
 use fours::FourRays;
 use std::sync::Arc;
 use strahl_accel::PACKET;
@@ -9,7 +9,7 @@ use strahl_scene::{Bokeh, Camera, Projection};
 use strahl_shade::Color;
 
 /// The fewest rays that are traced when the mean is not exact enough: a packet of a few costs little more than one ray.
-const FEW: u32 = 4;
+const RAYS_MIN: u32 = 4;
 
 /// The number of rays that POV-Ray traces, divided by `sd * sqrt(most / variance)`, in the limit of many rays. Measured on planes
 /// whose colours have the standard deviation `sd`; the numbers are in the test `as_many_rays_as_povray`.
@@ -74,7 +74,7 @@ impl LensSampler {
         &self,
         bundle: &RayBundle,
         center: impl Fn(f64, f64) -> Option<Ray>,
-        rays: &mut FewRays,
+        rays: &mut NextRays,
     ) {
         let (x, y) = bundle.at;
         let wanted = self.wanted(bundle.sum, bundle.squares, bundle.count);
@@ -102,7 +102,7 @@ impl LensSampler {
                 return 0;
             }
             (missing.min(PACKET as f64).ceil() as u32)
-                .max(FEW)
+                .max(RAYS_MIN)
                 .min(most.saturating_sub(count))
         };
         more.min(PACKET as u32)
@@ -233,13 +233,13 @@ mod tests {
         let mut all = vec![];
         let mut bundle = rays.bundle(at.0, at.1);
         loop {
-            let mut few = FewRays::new();
-            rays.more(&mut bundle, &mut few);
-            if few.is_empty() {
+            let mut next = NextRays::new();
+            rays.more(&mut bundle, &mut next);
+            if next.is_empty() {
                 return all;
             }
-            all.extend_from_slice(&few);
-            for ray in &few {
+            all.extend_from_slice(&next);
+            for ray in &next {
                 let color = Color::gray((all.len() % 7) as f64);
                 bundle.add(&Sample::from(color), ray.is_some());
             }
@@ -253,7 +253,7 @@ mod tests {
         center: impl Fn(f64, f64) -> Option<Ray>,
         trace: impl FnMut(&Ray) -> Color,
     ) -> Color {
-        let more = |bundle: &mut RayBundle, rays: &mut FewRays| lens.more(bundle, &center, rays);
+        let more = |bundle: &mut RayBundle, rays: &mut NextRays| lens.more(bundle, &center, rays);
         let bundle = RayBundle::new(x, y).traced(more, trace);
         bundle.mean().color
     }

@@ -1,7 +1,7 @@
 mod fours;
 
 use super::PrimaryRays;
-use super::bundle::{FewRays, RayBundle};
+use super::bundle::{NextRays, RayBundle};
 pub(super) use fours::FourFaces;
 use strahl_accel::PACKET;
 use strahl_math::{DVec2, DVec3, Ray};
@@ -13,7 +13,7 @@ impl PrimaryRays {
         &self,
         mesh: &MeshCamera,
         bundle: &mut RayBundle,
-        rays: &mut FewRays,
+        rays: &mut NextRays,
     ) {
         let pixel = self.pixel(bundle.at);
         let end = most_rays(mesh);
@@ -266,10 +266,10 @@ mod tests {
             for pixel in 0..6 {
                 let at = (f64::from(pixel % 3) + 0.5, f64::from(pixel / 3) + 0.5);
                 let [a, b] = [&fours, &singles].map(|rays| {
-                    let mut few = FewRays::new();
-                    rays.more(&mut rays.bundle(at.0, at.1), &mut few);
-                    let few = few.iter().flatten();
-                    few.map(|ray| (bits(ray.origin), bits(ray.direction)))
+                    let mut next = NextRays::new();
+                    rays.more(&mut rays.bundle(at.0, at.1), &mut next);
+                    let next = next.iter().flatten();
+                    next.map(|ray| (bits(ray.origin), bits(ray.direction)))
                         .collect::<Vec<_>>()
                 });
                 assert!(a == b && a.len() == 8, "{pixel}");

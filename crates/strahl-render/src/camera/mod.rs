@@ -4,7 +4,7 @@ mod bundle;
 mod lens;
 mod mesh;
 
-pub(crate) use bundle::{FewRays, RayBundle};
+pub(crate) use bundle::{NextRays, RayBundle};
 
 use lens::LensSampler;
 use mesh::FourFaces;
@@ -50,7 +50,7 @@ impl PrimaryRays {
         if self.is_sharp() {
             return self.ray(x, y).map_or(Color::BLACK, |ray| trace(&ray));
         }
-        let more = |bundle: &mut RayBundle, rays: &mut FewRays| self.more(bundle, rays);
+        let more = |bundle: &mut RayBundle, rays: &mut NextRays| self.more(bundle, rays);
         self.bundle(x, y).traced(more, trace).mean().color
     }
 
@@ -61,7 +61,7 @@ impl PrimaryRays {
 
     /// Appends the rays of a position that come next, once all those before have been added to the bundle; none if there are enough.
     /// There must be fewer rays than a packet has; there are at most as many more afterwards.
-    pub(crate) fn more(&self, bundle: &mut RayBundle, rays: &mut FewRays) {
+    pub(crate) fn more(&self, bundle: &mut RayBundle, rays: &mut NextRays) {
         if let Projection::Mesh(mesh) = &self.camera.projection {
             self.more_of_mesh(mesh, bundle, rays);
         } else if let Some(lens) = &self.lens {

@@ -25,8 +25,13 @@ use strahl_geometry::{PacketTree, RayShear, Scratch};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
-/// For fewer rays the culling test of a block does not pay.
-const FEW: u32 = 3;
+/// Fewer rays, to hits or to a light, are traced one by one: what a packet costs at first does not pay for them.
+pub(crate) const PACKET_MIN: usize = 3;
+
+/// Whether there are enough of these lanes for a packet.
+const fn fill_packet(lanes: u32) -> bool {
+    lanes.count_ones() as usize >= PACKET_MIN
+}
 
 /// Whether it pays to test these lanes four side by side: if more than two in each group of four are wanted.
 const fn are_dense(lanes: u32) -> bool {
@@ -383,7 +388,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     ) {
         let used = leaf.count - index * BLOCK;
         let mut left = lanes;
-        if lanes.count_ones() >= FEW {
+        if fill_packet(lanes) {
             left &= block.may_hit(isa, &self.culls, used);
         }
         for lane in lanes_of(left) {
@@ -413,7 +418,7 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, '_, Q> {
             return;
         }
         if let PrimKind::Instance(index) = prim.kind()
-            && lanes.count_ones() >= FEW
+            && fill_packet(lanes)
             && self.place.depth < Place::DEEPEST
         {
             self.instance(id, index, lanes, t_max);

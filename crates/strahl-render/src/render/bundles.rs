@@ -2,7 +2,7 @@
 //! rays of several positions, since one of them often wants only a few at a time.
 
 use super::pixels::PixelTracer;
-use crate::camera::{FewRays, RayBundle};
+use crate::camera::{NextRays, RayBundle};
 use crate::sampling::Sample;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
@@ -25,7 +25,7 @@ struct Bundles {
     /// The slots of bundles that have ended.
     free: ArrayVec<usize, PACKET>,
     /// The rays that wait, and the slots of their bundles.
-    rays: FewRays,
+    rays: NextRays,
     owners: ArrayVec<usize, { 2 * PACKET }>,
 }
 

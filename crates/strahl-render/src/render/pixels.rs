@@ -43,7 +43,7 @@ pub(super) fn squares(tile: Region) -> impl Iterator<Item = Region> {
 }
 
 /// Fewer samples of a pixel are traced one by one.
-const FEW: usize = 4;
+const PACKET_SAMPLES_MIN: usize = 4;
 
 /// Traces pixels on one thread.
 pub(super) struct PixelTracer<'s> {
@@ -450,7 +450,7 @@ impl PixelTracer<'_> {
         let mut samples = Samples::NONE;
         let options = self.options;
         let places = options.sampling.places(0, x, y, options.seed);
-        if self.together && !self.blind && places.len() >= FEW {
+        if self.together && !self.blind && places.len() >= PACKET_SAMPLES_MIN {
             self.samples_together(x, y, places, &mut samples);
             return samples;
         }
@@ -466,7 +466,7 @@ impl PixelTracer<'_> {
         let mut samples = Samples::NONE.with(first);
         let options = self.options;
         let places = options.sampling.places(0, x, y, options.seed).skip(1);
-        if self.together && !self.blind && places.len() >= FEW {
+        if self.together && !self.blind && places.len() >= PACKET_SAMPLES_MIN {
             self.samples_together(x, y, places, &mut samples);
             return samples;
         }
@@ -487,8 +487,8 @@ impl PixelTracer<'_> {
     ) {
         let mut places = places.peekable();
         while places.peek().is_some() {
-            let few = places.by_ref().take(PACKET);
-            let rays: ArrayVec<Option<Ray>, PACKET> = few
+            let next = places.by_ref().take(PACKET);
+            let rays: ArrayVec<Option<Ray>, PACKET> = next
                 .map(|(dx, dy)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
                 .collect();
             for sample in self.tree.trace_packet(&rays) {

@@ -39,11 +39,11 @@ impl<'a> Comparison<'a> {
         let mut differ = vec![false; pairs.len()];
         let unsure = |n: &usize| !self.slopes.surely_alike(pairs[*n][0], pairs[*n][1]);
         let doubtful: Vec<usize> = (0..pairs.len()).filter(unsure).collect();
-        for few in doubtful.chunks(Compared::FEW / 2) {
-            let colors: ArrayVec<Color, { Compared::FEW }> =
-                few.iter().flat_map(|n| pairs[*n]).collect();
-            let shown = Compared::few(&colors, self.refinement);
-            for (n, [a, b]) in few.iter().zip(shown.as_chunks().0) {
+        for chunk in doubtful.chunks(Compared::BATCH / 2) {
+            let colors: ArrayVec<Color, { Compared::BATCH }> =
+                chunk.iter().flat_map(|n| pairs[*n]).collect();
+            let shown = Compared::batch(&colors, self.refinement);
+            for (n, [a, b]) in chunk.iter().zip(shown.as_chunks().0) {
                 differ[*n] = a.differs(*b, self.refinement);
             }
         }

@@ -115,7 +115,7 @@ impl<'a> Division<'a> {
         if self.slopes.surely_alike(of_all(f64::min), of_all(f64::max)) {
             return false;
         }
-        let shown = Compared::few(&colors, self.refinement);
+        let shown = Compared::batch(&colors, self.refinement);
         let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
         let mut pairs = pairs.into_iter();
         pairs.any(|(a, b)| shown[a].differs(shown[b], self.refinement))

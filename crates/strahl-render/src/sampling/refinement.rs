@@ -90,16 +90,19 @@ impl fmt::Display for Refinement {
 pub(crate) struct Compared([f32; 3]);
 
 impl Compared {
-    /// The number of colours that [`Compared::few`] takes.
-    pub(crate) const FEW: usize = 16;
+    /// The number of colours that [`Compared::batch`] takes.
+    pub(crate) const BATCH: usize = 16;
 
     pub(crate) fn new(color: Color, refinement: &Refinement) -> Self {
-        Self::few(&[color], refinement)[0]
+        Self::batch(&[color], refinement)[0]
     }
 
     /// A few colours at a time, with the same bits: powers take most of the time.
-    pub(crate) fn few(colors: &[Color], refinement: &Refinement) -> ArrayVec<Self, { Self::FEW }> {
-        let mut powers = ArrayVec::<f64, { 3 * Self::FEW }>::new();
+    pub(crate) fn batch(
+        colors: &[Color],
+        refinement: &Refinement,
+    ) -> ArrayVec<Self, { Self::BATCH }> {
+        let mut powers = ArrayVec::<f64, { 3 * Self::BATCH }>::new();
         powers.extend(colors.iter().flat_map(|color| color.to_array()));
         let positive = |v: &f64| *v > 0.0;
         for v in powers.iter_mut().filter(|v| !positive(v)) {

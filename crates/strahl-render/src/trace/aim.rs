@@ -1,7 +1,7 @@
 //! The lengths of the rays of a batch, and the directions from its points to a light, side by side.
 
-use super::point::FEW;
 use super::point::{Lanes, Point};
+use crate::query::PACKET_MIN;
 use strahl_accel::PACKET;
 use strahl_math::DVec3;
 use strahl_shade::{Light, LightSample};
@@ -47,7 +47,7 @@ impl Speeds {
     #[inline]
     pub(super) fn of(points: &[Point<'_>]) -> Self {
         let (mut lengths, mut reciprocals) = ([1.0; PACKET], [1.0; PACKET]);
-        if points.len() < FEW {
+        if points.len() < PACKET_MIN {
             for (k, point) in points.iter().enumerate() {
                 lengths[k] = point.branch.ray.direction.length();
                 reciprocals[k] = lengths[k].recip();

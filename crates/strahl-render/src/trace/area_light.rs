@@ -3,10 +3,10 @@
 //! Which points of a light's grid are needed shows step by step, because cells are divided whose corners differ. Each round finds out which
 //! points every lit point needs next; their shadow rays go in packets, those to one point of the grid behind each other.
 
-use super::point::FEW;
 use super::{Aim, Arriving, Point, TreeTracer};
 use crate::area::{AreaMemory, Cell, GridPoint, Grids, Part, Wanted, differ};
 use crate::observer::TraceObserver;
+use crate::query::PACKET_MIN;
 use crate::shadow::Shadow;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
@@ -53,11 +53,12 @@ impl<'s> TreeTracer<'s> {
     ) {
         let size = area.size_1 as usize * area.size_2 as usize;
         let together = (TOGETHER / size.max(1)).clamp(1, PACKET);
-        for few in arriving.chunks_mut(together) {
+        for chunk in arriving.chunks_mut(together) {
             let light_source = &self.intersector.scene.lights[light].light;
-            let samples: ArrayVec<LightSample, PACKET> = few.iter().map(|one| one.sample).collect();
+            let samples: ArrayVec<LightSample, PACKET> =
+                chunk.iter().map(|one| one.sample).collect();
             let mut queries = ArrayVec::<AreaQuery<'_>, PACKET>::new();
-            queries.extend(few.iter().zip(&samples).map(|(one, center)| {
+            queries.extend(chunk.iter().zip(&samples).map(|(one, center)| {
                 let point = &points[one.lane];
                 AreaQuery {
                     number: light,
@@ -69,11 +70,11 @@ impl<'s> TreeTracer<'s> {
                 }
             }));
             let mut memory = std::mem::take(&mut self.area_memory);
-            memory.grids.make(few.len(), size);
-            self.area_rays(&queries, &mut memory, few, observer);
+            memory.grids.make(chunk.len(), size);
+            self.area_rays(&queries, &mut memory, chunk, observer);
             self.area_memory = memory;
             if area.illumination {
-                let lit = few.iter_mut().zip(&queries);
+                let lit = chunk.iter_mut().zip(&queries);
                 for (one, query) in lit.filter(|(one, _)| !one.sample.range.is_empty()) {
                     one.reflected = Some(if one.visible.is_black() {
                         (Color::BLACK, Color::BLACK)
@@ -110,8 +111,8 @@ impl<'s> TreeTracer<'s> {
             let lit = (0..).zip(&*arriving).filter(|(_, one)| is_lit(one));
             wanted.extend(lit.map(|(lit, _)| Wanted { lit, point }));
         }
-        for few in wanted.chunks(PACKET) {
-            self.area_packet(queries, few, grids, observer);
+        for chunk in wanted.chunks(PACKET) {
+            self.area_packet(queries, chunk, grids, observer);
         }
         // Most lit points receive the same from all of these points of the grid, and then they need no others.
         parts.clear();
@@ -153,8 +154,8 @@ impl<'s> TreeTracer<'s> {
                     }
                 }
             }
-            for few in wanted.chunks(PACKET) {
-                self.area_packet(queries, few, grids, observer);
+            for chunk in wanted.chunks(PACKET) {
+                self.area_packet(queries, chunk, grids, observer);
             }
         }
         for lit in mixed {
@@ -184,7 +185,7 @@ impl<'s> TreeTracer<'s> {
         }
         let mut shadows = [Shadow::NONE; PACKET];
         let together = self.settings.packets && self.intersector.scene.mask(light).is_none();
-        if together && aims.len() >= FEW {
+        if together && aims.len() >= PACKET_MIN {
             self.shadows_of(&aims, light, &mut shadows);
         } else {
             for (aim, shadow) in aims.iter().zip(&mut shadows) {

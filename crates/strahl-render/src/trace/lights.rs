@@ -2,12 +2,12 @@
 
 use super::TreeTracer;
 use super::aim::{Directions, Places};
-use super::point::FEW;
 use super::point::{Lanes, Point};
 use crate::activity::Phase;
 use crate::hit::Origin;
 use crate::layers;
 use crate::observer::{LightTerm, ShadowReport, TraceObserver};
+use crate::query::PACKET_MIN;
 use crate::shadow::{Shadow, ShadowRay};
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
@@ -70,7 +70,7 @@ impl<'s> TreeTracer<'s> {
         if !scene.has_light_groups() {
             let mut found;
             let mut places = None;
-            if lanes.len() >= FEW && !scene.lights.is_empty() {
+            if lanes.len() >= PACKET_MIN && !scene.lights.is_empty() {
                 found = Places::NONE;
                 found.find(points, lanes);
                 places = Some(&found);
@@ -184,7 +184,7 @@ impl<'s> TreeTracer<'s> {
             self.area_light(area, number, points, arriving, observer);
             return;
         }
-        if scene.mask(number).is_none() && arriving.len() >= FEW {
+        if scene.mask(number).is_none() && arriving.len() >= PACKET_MIN {
             self.shadows_together(points, number, arriving);
             return;
         }

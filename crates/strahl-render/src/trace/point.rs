@@ -8,9 +8,6 @@ use strahl_accel::PACKET;
 use strahl_shade::texture::TexturePaint;
 use strahl_shade::{Color, ShadingModel};
 
-/// Fewer rays, to hits or to a light, are traced one by one.
-pub(super) const FEW: usize = 3;
-
 /// The lanes of a batch that a stage has to do with, in order.
 pub(crate) type Lanes = ArrayVec<usize, PACKET>;
 

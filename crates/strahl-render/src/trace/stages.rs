@@ -15,12 +15,13 @@
 
 use super::aim::Speeds;
 use super::colors::find_colors;
-use super::point::{FEW, Lanes, Point};
+use super::point::{Lanes, Point};
 use super::{FirstHit, Node, TreeTracer};
 use crate::activity::Phase;
 use crate::hit::{Hit, RayClass};
 use crate::layers;
 use crate::observer::{BranchEnd, HitReport, RayKind, RayReport, Shading, TraceObserver};
+use crate::query::PACKET_MIN;
 use crate::surface::Split;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
@@ -82,11 +83,11 @@ impl<'s> TreeTracer<'s> {
         for class in [RayClass::Camera, RayClass::Secondary] {
             let of_class = |lane: &usize| points[*lane].branch.class == class;
             let lanes: Lanes = (0..points.len()).filter(of_class).collect();
-            if lanes.len() == points.len() && lanes.len() >= FEW {
+            if lanes.len() == points.len() && lanes.len() >= PACKET_MIN {
                 self.intersect_together(points, &lanes, hits);
                 return;
             }
-            if lanes.len() >= FEW {
+            if lanes.len() >= PACKET_MIN {
                 let mut found = [None; PACKET];
                 self.intersect_together(points, &lanes, &mut found);
                 for (lane, hit) in lanes.iter().zip(found) {

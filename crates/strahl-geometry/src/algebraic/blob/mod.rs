@@ -34,7 +34,7 @@ pub struct Blob {
 }
 
 /// Up to this many components are tested one by one.
-const FEW: usize = 6;
+const LIST_MAX: usize = 6;
 
 impl Blob {
     /// The blob of a threshold and components.
@@ -47,7 +47,7 @@ impl Blob {
         Self {
             threshold,
             bounds: attracting.fold(Aabb::EMPTY, |sum, (_, b)| sum.union(b)),
-            hierarchy: (components.len() > FEW).then(|| Bvh2::build(&boxes)),
+            hierarchy: (components.len() > LIST_MAX).then(|| Bvh2::build(&boxes)),
             components,
         }
     }

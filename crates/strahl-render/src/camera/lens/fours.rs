@@ -1,6 +1,6 @@
 //! Four rays through a lens at once: their roots and divisions, one behind the other, take longer than all else.
 
-use super::{FewRays, LensSampler, STEPS};
+use super::{LensSampler, NextRays, STEPS};
 use std::ops::Range;
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
@@ -51,7 +51,7 @@ impl FourRays {
         numbers: Range<u32>,
         shift: [f64; 4],
         at: [f64; 2],
-        rays: &mut FewRays,
+        rays: &mut NextRays,
     ) -> bool {
         dispatch!(Simd::best(), isa => self.push_with(isa, numbers, shift, at, rays))
     }
@@ -63,7 +63,7 @@ impl FourRays {
         numbers: Range<u32>,
         shift: [f64; 4],
         at: [f64; 2],
-        rays: &mut FewRays,
+        rays: &mut NextRays,
     ) -> bool {
         let mut first = numbers.start;
         while first < numbers.end {

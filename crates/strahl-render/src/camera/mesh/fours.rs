@@ -1,6 +1,6 @@
 //! Rays from one face of four meshes at once: copies of one mesh, moved a little each, as cameras have them that take many rays for a pixel.
 
-use super::{FewRays, MeshCamera, MeshLayout};
+use super::{MeshCamera, MeshLayout, NextRays};
 use std::sync::Arc;
 use strahl_math::{DVec3, Ray};
 use strahl_scene::{CameraFace, CameraFront, CameraPart};
@@ -49,14 +49,14 @@ impl FourFaces {
     }
 
     /// Appends the rays from the middle of a face, with the bits of single ones; none if there are fewer faces.
-    pub(super) fn push(&self, mesh: &MeshCamera, face: usize, rays: &mut FewRays) {
+    pub(super) fn push(&self, mesh: &MeshCamera, face: usize, rays: &mut NextRays) {
         if let Some(face) = self.faces.get(face) {
             dispatch!(Simd::best(), isa => self.push_with(isa, mesh, face, rays));
         }
     }
 
     #[inline(always)]
-    fn push_with<I: Isa>(&self, isa: I, mesh: &MeshCamera, face: &CameraFace, rays: &mut FewRays) {
+    fn push_with<I: Isa>(&self, isa: I, mesh: &MeshCamera, face: &CameraFace, rays: &mut NextRays) {
         let corners = [
             self.in_world(isa, face.corners[0]),
             self.in_world(isa, face.corners[1]),

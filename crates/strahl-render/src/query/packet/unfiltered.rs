@@ -2,7 +2,7 @@
 
 use super::super::kinds::Query;
 use super::super::shapes::UnfilteredShape;
-use super::{FEW, Together, are_dense};
+use super::{Together, are_dense, fill_packet};
 use crate::activity::Phase;
 use crate::hit::Hit;
 use strahl_accel::{PACKET, lanes_of};
@@ -27,7 +27,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         let side_by_side = match (shape.shape, shape.transform) {
             // The test of a box along the axes takes too little time.
             (Shape::Cuboid(_), None) => false,
-            (Shape::Csg(tree), _) if tree.goes_in_packets() && lanes.count_ones() >= FEW => {
+            (Shape::Csg(tree), _) if tree.goes_in_packets() && fill_packet(lanes) => {
                 self.meet_tree(id, &shape, tree, lanes, t_max);
                 self.shared.slot.enter(Phase::Traversal);
                 return;
