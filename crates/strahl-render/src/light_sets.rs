@@ -11,7 +11,7 @@ pub(crate) struct Lit {
 
 impl Lit {
     /// By the lights in no group, from the front: the ordinary case.
-    pub(crate) const PLAIN: Self = Self {
+    pub(crate) const DEFAULT: Self = Self {
         set: 0,
         both_sides: false,
     };
@@ -23,9 +23,9 @@ impl Lit {
 pub(crate) struct LightSets {
     /// Numbers of the scene's lights, by set; empty in a scene without groups, where all lights shine on everything.
     lists: Vec<Vec<u32>>,
-    /// How the objects are lit; those beyond the list are [`Lit::PLAIN`].
+    /// How the objects are lit; those beyond the list are [`Lit::DEFAULT`].
     of_objects: Vec<Lit>,
-    /// Whether an object is not [`Lit::PLAIN`].
+    /// Whether an object is not [`Lit::DEFAULT`].
     special: bool,
 }
 
@@ -46,7 +46,7 @@ impl LightSets {
         Some(list.map_or(&[], Vec::as_slice))
     }
 
-    /// Whether an object is not [`Lit::PLAIN`].
+    /// Whether an object is not [`Lit::DEFAULT`].
     #[inline]
     pub(crate) const fn are_special(&self) -> bool {
         self.special
@@ -55,7 +55,7 @@ impl LightSets {
     /// How an object is lit.
     pub(crate) fn of_object(&self, object: u32) -> Lit {
         let own = self.of_objects.get(object as usize);
-        own.copied().unwrap_or(Lit::PLAIN)
+        own.copied().unwrap_or(Lit::DEFAULT)
     }
 }
 
@@ -131,8 +131,8 @@ impl LightSetsDraft {
         if let Some(group) = self.group(lit.set) {
             group.has_objects = true;
         }
-        if lit != Lit::PLAIN {
-            self.of_objects.resize(object as usize, Lit::PLAIN);
+        if lit != Lit::DEFAULT {
+            self.of_objects.resize(object as usize, Lit::DEFAULT);
             self.of_objects.push(lit);
             self.special = true;
         }
@@ -143,7 +143,7 @@ impl LightSetsDraft {
         if let Some(group) = self.group(lit.set) {
             group.has_objects = true;
         }
-        self.special |= lit != Lit::PLAIN;
+        self.special |= lit != Lit::DEFAULT;
     }
 
     /// The finished lists, for a scene with `before` lights of its own, followed by `found` lights among the objects.

@@ -23,7 +23,7 @@ impl RenderScene {
         if self.light_sets.are_special() {
             self.lit_specially(element, object)
         } else {
-            Lit::PLAIN
+            Lit::DEFAULT
         }
     }
 
@@ -31,7 +31,7 @@ impl RenderScene {
     #[cold]
     fn lit_specially(&self, element: u64, object: u32) -> Lit {
         let own = self.light_sets.of_object(object);
-        let mut around = Lit::PLAIN;
+        let mut around = Lit::DEFAULT;
         let (mut group, mut rest) = (&self.groups[0], element);
         loop {
             let prim = group.prim_of(rest);
@@ -43,7 +43,7 @@ impl RenderScene {
                 _ => (own, None),
             };
             around.both_sides |= outer.both_sides;
-            if around.set == Lit::PLAIN.set {
+            if around.set == Lit::DEFAULT.set {
                 around.set = outer.set;
             }
             let Some(next) = next else {

@@ -68,7 +68,7 @@ pub(crate) struct Medium {
 pub(crate) struct MediaArena {
     entries: Vec<(Medium, MediaStack)>,
     /// How many entries are for what the eye is in, which all trees have in common.
-    kept: usize,
+    of_eye: usize,
 }
 
 /// A stack in the arena: the number of its top entry plus one, 0 for empty space.
@@ -83,7 +83,7 @@ impl MediaArena {
     /// Forgets all stacks but that of the eye.
     #[inline]
     pub(crate) fn clear(&mut self) {
-        self.entries.truncate(self.kept);
+        self.entries.truncate(self.of_eye);
     }
 
     /// Makes the stack of the eye of these media, the last on top.
@@ -93,13 +93,13 @@ impl MediaArena {
         for medium in media {
             top = self.entered(top, medium);
         }
-        self.kept = self.entries.len();
+        self.of_eye = self.entries.len();
     }
 
     /// The stack of the eye.
     #[inline]
     pub(crate) const fn eye(&self) -> MediaStack {
-        MediaStack(self.kept as u32)
+        MediaStack(self.of_eye as u32)
     }
 
     /// The material a ray with this stack is inside of.

@@ -35,7 +35,7 @@ pub(crate) enum PrimKind {
     Triangle(u32, u32),
     /// A shape in the group's own space.
     Shape(u32),
-    /// A plain sphere.
+    /// A sphere in its compact form.
     Sphere(u32),
     /// A shape with a transformation.
     Placed(u32),

@@ -22,11 +22,12 @@ pub(crate) trait Run: Clone + Debug {
 #[derive(Clone, Debug)]
 pub(crate) struct RunList<R: Run> {
     len: u32,
-    kept: Kept<R>,
+    storage: Storage<R>,
 }
 
+/// How the items are stored.
 #[derive(Clone, Debug)]
-enum Kept<R: Run> {
+enum Storage<R: Run> {
     /// Each with the number of its first item.
     Runs(Vec<(u32, R)>),
     Items(Vec<R::Item>),
@@ -42,7 +43,7 @@ impl<R: Run> Default for RunList<R> {
     fn default() -> Self {
         Self {
             len: 0,
-            kept: Kept::Runs(Vec::new()),
+            storage: Storage::Runs(Vec::new()),
         }
     }
 }
@@ -60,9 +61,9 @@ impl<R: Run> RunList<R> {
 
     /// Appends an item.
     pub(crate) fn push(&mut self, item: R::Item) {
-        match &mut self.kept {
-            Kept::Items(items) => items.push(item),
-            Kept::Runs(runs) => {
+        match &mut self.storage {
+            Storage::Items(items) => items.push(item),
+            Storage::Runs(runs) => {
                 let goes_on = runs
                     .last_mut()
                     .is_some_and(|(first, run)| run.goes_on(self.len - *first, &item));
@@ -77,9 +78,9 @@ impl<R: Run> RunList<R> {
     /// An item; the number must be below the length.
     #[inline(always)]
     pub(crate) fn at(&self, index: u32) -> R::Item {
-        match &self.kept {
-            Kept::Items(items) => items[index as usize].clone(),
-            Kept::Runs(runs) => Self::in_runs(runs, index),
+        match &self.storage {
+            Storage::Items(items) => items[index as usize].clone(),
+            Storage::Runs(runs) => Self::in_runs(runs, index),
         }
     }
 
@@ -103,9 +104,9 @@ impl<R: Run> RunList<R> {
     /// All items in their order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = R::Item> {
         let mut run = 0;
-        (0..self.len).map(move |index| match &self.kept {
-            Kept::Items(items) => items[index as usize].clone(),
-            Kept::Runs(runs) => {
+        (0..self.len).map(move |index| match &self.storage {
+            Storage::Items(items) => items[index as usize].clone(),
+            Storage::Runs(runs) => {
                 run += usize::from(runs.get(run + 1).is_some_and(|(first, _)| *first == index));
                 let (first, start) = &runs[run];
                 start.item(index - first)
@@ -115,16 +116,16 @@ impl<R: Run> RunList<R> {
 
     /// The runs of the list: the first item and the positions of each. Where items are stored one by one, each is a run.
     pub(crate) fn runs(&self) -> impl Iterator<Item = (R::Item, Range<u32>)> {
-        let count = match &self.kept {
-            Kept::Items(items) => items.len(),
-            Kept::Runs(runs) => runs.len(),
+        let count = match &self.storage {
+            Storage::Items(items) => items.len(),
+            Storage::Runs(runs) => runs.len(),
         };
-        (0..count).map(move |number| match &self.kept {
-            Kept::Items(items) => {
+        (0..count).map(move |number| match &self.storage {
+            Storage::Items(items) => {
                 let place = number as u32;
                 (items[number].clone(), place..place + 1)
             }
-            Kept::Runs(runs) => {
+            Storage::Runs(runs) => {
                 let (first, run) = &runs[number];
                 let end = runs.get(number + 1).map_or(self.len, |(next, _)| *next);
                 (run.item(0), *first..end)
@@ -134,10 +135,10 @@ impl<R: Run> RunList<R> {
 
     /// The finished list in the form that is read fastest: item by item if runs do not pay.
     pub(crate) fn completed(self) -> Self {
-        match &self.kept {
-            Kept::Runs(runs) if self.len < SHORT || runs.len() * WORTH_IT > self.len() => Self {
+        match &self.storage {
+            Storage::Runs(runs) if self.len < SHORT || runs.len() * WORTH_IT > self.len() => Self {
                 len: self.len,
-                kept: Kept::Items(self.iter().collect()),
+                storage: Storage::Items(self.iter().collect()),
             },
             _ => self,
         }
@@ -145,9 +146,9 @@ impl<R: Run> RunList<R> {
 
     /// Bytes it occupies.
     pub(crate) fn bytes(&self) -> usize {
-        match &self.kept {
-            Kept::Runs(runs) => size_of_val(runs.as_slice()),
-            Kept::Items(items) => size_of_val(items.as_slice()),
+        match &self.storage {
+            Storage::Runs(runs) => size_of_val(runs.as_slice()),
+            Storage::Items(items) => size_of_val(items.as_slice()),
         }
     }
 }

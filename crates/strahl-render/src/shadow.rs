@@ -37,7 +37,7 @@ impl Shadow {
 }
 
 /// What a shadow ray keeps of the light up to a surface that lets some through, or behind the last one.
-struct Kept<'h> {
+struct Transmittance<'h> {
     /// The hit and the number of its object.
     surface: Option<(&'h Hit, u32)>,
     /// What the surface lets through.
@@ -110,7 +110,7 @@ impl Intersector<'_> {
         shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
-        tell: impl FnMut(Kept<'_>),
+        tell: impl FnMut(Transmittance<'_>),
     ) -> Shadow {
         if !self.scene.transmits {
             return Shadow::NONE;
@@ -140,7 +140,7 @@ impl Intersector<'_> {
         shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
-        mut tell: impl FnMut(Kept<'_>),
+        mut tell: impl FnMut(Transmittance<'_>),
     ) -> Shadow {
         if hits.is_empty() {
             // Compiled by itself, without a place for surfaces.
@@ -159,7 +159,7 @@ impl Intersector<'_> {
         shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &[Hit],
-        tell: &mut impl FnMut(Kept<'_>),
+        tell: &mut impl FnMut(Transmittance<'_>),
     ) -> Shadow {
         let ShadowRay {
             ray,
@@ -199,7 +199,7 @@ impl Intersector<'_> {
                 self.scene.absorbed(arena.top(inside), stretch)
             };
             visible *= absorbed;
-            tell(Kept {
+            tell(Transmittance {
                 surface: Some((hit, resolved.appearance.object)),
                 filter,
                 absorbed,
@@ -215,7 +215,7 @@ impl Intersector<'_> {
             let stretch = (range.max - entered_at) * ray.direction.length();
             let absorbed = self.scene.absorbed(arena.top(inside), stretch);
             visible *= absorbed;
-            tell(Kept {
+            tell(Transmittance {
                 surface: None,
                 filter: Color::WHITE,
                 absorbed,

@@ -8,16 +8,16 @@ use strahl_math::DVec3;
 
 /// A sphere that is seen from outside and whose texture is not rotated: scenes have millions of them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PlainSphere {
+pub(crate) struct CompactSphere {
     center: DVec3,
     radius: f64,
 }
 
-impl PlainSphere {
+impl CompactSphere {
     /// The compact form of a sphere, if it has one.
     pub(crate) fn of(sphere: &Sphere) -> Option<Self> {
-        let plain = sphere.radius() > 0.0 && !sphere.is_turned();
-        plain.then(|| Self {
+        let is_compact = sphere.radius() > 0.0 && !sphere.is_turned();
+        is_compact.then(|| Self {
             center: sphere.center(),
             radius: sphere.radius(),
         })
@@ -29,21 +29,22 @@ impl PlainSphere {
     }
 }
 
-/// The plain spheres of a group, each stored once: in a list, or in the blocks of the accelerator's leaves.
+/// The compact spheres of a group, each stored once: in a list, or in the blocks of the accelerator's leaves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spheres {
-    kept: Kept,
+    storage: Storage,
     appearances: RunList<AppearanceRun>,
 }
 
+/// Where the spheres are.
 #[derive(Clone, Debug)]
-enum Kept {
-    ByNumber(Vec<PlainSphere>),
+enum Storage {
+    ByNumber(Vec<CompactSphere>),
     /// For each sphere its position in the blocks.
     InBlocks(Vec<u32>),
 }
 
-impl Default for Kept {
+impl Default for Storage {
     fn default() -> Self {
         Self::ByNumber(Vec::new())
     }
@@ -51,9 +52,9 @@ impl Default for Kept {
 
 impl Spheres {
     /// Appends a sphere and returns its number.
-    pub(crate) fn push(&mut self, sphere: PlainSphere, appearance: Appearance) -> u32 {
+    pub(crate) fn push(&mut self, sphere: CompactSphere, appearance: Appearance) -> u32 {
         let number = self.appearances.len() as u32;
-        if let Kept::ByNumber(list) = &mut self.kept {
+        if let Storage::ByNumber(list) = &mut self.storage {
             list.push(sphere);
             self.appearances.push(appearance);
         }
@@ -63,9 +64,9 @@ impl Spheres {
     /// A sphere; `blocks` are the group's blocks of spheres, to which it may have been moved.
     #[inline(always)]
     pub(crate) fn get(&self, number: u32, blocks: &[SphereBlock]) -> Sphere {
-        match &self.kept {
-            Kept::ByNumber(list) => list[number as usize].sphere(),
-            Kept::InBlocks(places) => {
+        match &self.storage {
+            Storage::ByNumber(list) => list[number as usize].sphere(),
+            Storage::InBlocks(places) => {
                 let place = places[number as usize] as usize;
                 blocks[place / BLOCK].sphere(place % BLOCK)
             }
@@ -104,19 +105,22 @@ impl Spheres {
         }
         let appearances = self.appearances.completed();
         // Spheres whose bounds don't fit f32 are in no block.
-        let kept = match places.contains(&u32::MAX) {
-            true => self.kept,
-            false => Kept::InBlocks(places),
+        let storage = match places.contains(&u32::MAX) {
+            true => self.storage,
+            false => Storage::InBlocks(places),
         };
-        Self { kept, appearances }
+        Self {
+            storage,
+            appearances,
+        }
     }
 
     /// Bytes they occupy beside the blocks.
     pub(crate) fn bytes(&self) -> usize {
-        let kept = match &self.kept {
-            Kept::ByNumber(list) => size_of_val(list.as_slice()),
-            Kept::InBlocks(places) => size_of_val(places.as_slice()),
+        let own = match &self.storage {
+            Storage::ByNumber(list) => size_of_val(list.as_slice()),
+            Storage::InBlocks(places) => size_of_val(places.as_slice()),
         };
-        kept + self.appearances.bytes()
+        own + self.appearances.bytes()
     }
 }

@@ -118,7 +118,7 @@ impl<'s> Surface<'s> {
             n_smooth: None,
             entering: true,
             thin: false,
-            lit: Lit::PLAIN,
+            lit: Lit::DEFAULT,
             shows_lights: true,
             eta_1: 1.0,
             eta_2: 1.0,

@@ -48,6 +48,6 @@ pub(crate) struct MeshUse {
 pub(crate) struct InstanceUse {
     pub(crate) group: u32,
     pub(crate) transform: Transform,
-    /// How all its elements are lit; [`Lit::PLAIN`] leaves it to the objects in the group.
+    /// How all its elements are lit; [`Lit::DEFAULT`] leaves it to the objects in the group.
     pub(crate) lit: Lit,
 }

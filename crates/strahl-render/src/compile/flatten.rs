@@ -8,7 +8,7 @@ use crate::light_sets::{LightSetsDraft, Lit};
 use crate::objects::{ObjectInfo, Objects};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
-use crate::spheres::{PlainSphere, Spheres};
+use crate::spheres::{CompactSphere, Spheres};
 use crate::uses::{InstanceUse, MeshUse, ShapeUse};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -39,11 +39,11 @@ impl FlatGroup {
         visible: u8,
         flags: u8,
     ) {
-        let plain = match &shape {
-            Shape::Sphere(sphere) => PlainSphere::of(sphere),
+        let compact = match &shape {
+            Shape::Sphere(sphere) => CompactSphere::of(sphere),
             _ => None,
         };
-        let kind = match (plain, appearance) {
+        let kind = match (compact, appearance) {
             (Some(sphere), Appearances::One(appearance)) => {
                 PrimKind::Sphere(self.spheres.push(sphere, appearance))
             }

@@ -51,7 +51,7 @@ impl<'a> Todo<'a> {
                 material_uv_mapped: object.uv_mapped,
                 lit: Lit {
                     both_sides: object.double_illuminated,
-                    ..Lit::PLAIN
+                    ..Lit::DEFAULT
                 },
                 is_lamp: object.is_lamp,
                 body: None,

@@ -264,7 +264,7 @@ fn masks(
         Ok(Some(InstanceUse {
             group: id,
             transform: mask.transform,
-            lit: Lit::PLAIN,
+            lit: Lit::DEFAULT,
         }))
     });
     masks.collect()

@@ -45,7 +45,7 @@ pub(super) fn open_spaces(flat: &mut Flat) {
                     group.instances.push(InstanceUse {
                         group: first + *cluster as u32,
                         transform,
-                        lit: Lit::PLAIN,
+                        lit: Lit::DEFAULT,
                     });
                     let kind = PrimKind::Instance(group.instances.len() as u32 - 1);
                     prims.push(Prim::new(kind, u8::MAX, Prim::STOPS | Prim::TRANSMITS));

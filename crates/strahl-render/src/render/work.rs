@@ -50,7 +50,7 @@ impl Work {
         if options.alpha {
             film.alpha = Some(try_filled(region, 1.0)?);
         }
-        let kept = match options.sampling {
+        let sampled = match options.sampling {
             Sampling::Center => None,
             Sampling::Grid(_) => options.coarse_first.then_some(region),
             // The pixels that decide about those of a tile, so that what is refined does not depend on regions.
@@ -64,7 +64,7 @@ impl Work {
                 ..region
             }),
         };
-        let lattice = match kept {
+        let lattice = match sampled {
             None => None,
             Some(region) => Some(Lattice {
                 region,

@@ -59,12 +59,12 @@ impl Intersector<'_> {
             range,
             ..*shadow_ray
         };
-        self.filtered_by(&shadow_ray, arena, hits, |kept| match kept.surface {
+        self.filtered_by(&shadow_ray, arena, hits, |passed| match passed.surface {
             Some((hit, object)) => {
-                let weakens = met(hit, object, false, kept.filter, kept.absorbed);
+                let weakens = met(hit, object, false, passed.filter, passed.absorbed);
                 report.met.push(weakens);
             }
-            None => report.rest = kept.absorbed,
+            None => report.rest = passed.absorbed,
         });
         report
     }
