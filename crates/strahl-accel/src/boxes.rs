@@ -115,17 +115,10 @@ impl Box32 {
         (0..3).any(|axis| self.lo[axis] > self.hi[axis])
     }
 
-    /// The intersection with another box; [`Box32::EMPTY`] if there is none.
-    pub(crate) fn common(&self, other: &Self) -> Self {
-        let common = Self {
-            lo: self.lo.max(other.lo),
-            hi: self.hi.min(other.hi),
-        };
-        if common.is_empty() {
-            Self::EMPTY
-        } else {
-            common
-        }
+    /// The part within another box; [`Box32::EMPTY`] if there is none.
+    pub(crate) fn clipped(&self, other: &Self) -> Self {
+        let part = self.intersection(other);
+        if part.is_empty() { Self::EMPTY } else { part }
     }
 
     pub(crate) fn contains(&self, other: &Self) -> bool {

@@ -14,12 +14,12 @@ pub(crate) struct Base {
     /// The primitives that are in no cell: without bounds, or too far away for f32.
     pub(crate) unbounded: List,
     /// The construction of V. Havran's published figures: primitives may be tested repeatedly, and no empty cells are skipped.
-    pub(crate) plain: bool,
+    pub(crate) published: bool,
 }
 
 impl Base {
     /// The base for some primitives, and those of them that go into cells.
-    pub(crate) fn gather(shapes: &dyn Shapes, plain: bool) -> (Self, Vec<u32>) {
+    pub(crate) fn gather(shapes: &dyn Shapes, published: bool) -> (Self, Vec<u32>) {
         let (mut ids, mut unbounded, mut whole) = (Vec::new(), Vec::new(), Aabb::EMPTY);
         for id in 0..shapes.count() as u32 {
             let bounds = shapes.bounds(id);
@@ -30,14 +30,14 @@ impl Base {
                 unbounded.push(id);
             }
         }
-        let room = (!ids.is_empty()).then(|| match plain {
+        let room = (!ids.is_empty()).then(|| match published {
             true => Room::published(whole),
             false => Room::new(whole),
         });
         let base = Self {
             room,
             unbounded: List::of(unbounded),
-            plain,
+            published,
         };
         (base, ids)
     }
@@ -63,7 +63,7 @@ impl Base {
                 far: way.moved.upper(t_max),
                 t_max,
                 mailbox: Mailbox::new(),
-                plain: self.plain,
+                published: self.published,
                 visitor,
                 stats,
             });
@@ -79,7 +79,7 @@ pub(crate) struct Search<'w, V> {
     pub(crate) far: f64,
     t_max: f64,
     mailbox: Mailbox,
-    plain: bool,
+    published: bool,
     visitor: &'w mut V,
     pub(crate) stats: &'w mut TraversalStats,
 }
@@ -89,7 +89,7 @@ impl<V: Visitor> Search<'_, V> {
     #[inline(always)]
     pub(crate) fn visit(&mut self, ids: &[u32]) -> bool {
         for id in ids {
-            if !self.plain && !self.mailbox.is_new(*id) {
+            if !self.published && !self.mailbox.is_new(*id) {
                 continue;
             }
             self.stats.primitive_tests += 1;

@@ -32,7 +32,7 @@ impl Ref {
             shapes.halves(self.id(), &own.to_aabb(), axis, f64::from(at))
         };
         boxes.map(|b| {
-            let part = Box32::try_new(&b).map_or(Box32::EMPTY, |b| b.common(own));
+            let part = Box32::try_new(&b).map_or(Box32::EMPTY, |b| b.clipped(own));
             Self::new(&part, self.id(), self.class())
         })
     }

@@ -96,7 +96,7 @@ impl Pieces<'_> {
         }
         if let Some(plane) = plane {
             let [left, right] = bins.bounds(plane);
-            let common = left.common(&right);
+            let common = left.clipped(&right);
             let overlap = if common.is_empty() {
                 0.0
             } else {

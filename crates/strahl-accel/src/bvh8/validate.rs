@@ -42,7 +42,7 @@ impl Tree {
                     let whole = bounds.get(*id as usize).and_then(Box32::try_new);
                     let whole =
                         whole.ok_or_else(|| format!("primitive {id} is none for a tree"))?;
-                    parts.push((*id, whole.common(&own)));
+                    parts.push((*id, whole.clipped(&own)));
                 }
                 continue;
             }

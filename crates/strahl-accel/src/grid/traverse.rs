@@ -84,7 +84,7 @@ struct Walker<'w, V> {
 
 /// The content of a cell.
 enum Content<'g> {
-    Nothing,
+    Empty,
     Primitives(&'g [u32]),
     Grid(u32),
 }
@@ -93,7 +93,7 @@ impl Grids {
     #[inline(always)]
     fn content(&self, filled: u64, first: u32, bit: u32) -> Content<'_> {
         if filled >> bit & 1 == 0 {
-            return Content::Nothing;
+            return Content::Empty;
         }
         let cell = (first + (filled & ((1 << bit) - 1)).count_ones()) as usize;
         let (start, end) = (self.offsets[cell], self.offsets[cell + 1] & !NESTED);
@@ -122,7 +122,7 @@ impl<V: Visitor> Walker<'_, V> {
             self.search.stats.node_visits += 1;
             let (place, bit) = grid.place(index);
             let block = grids.blocks[place];
-            if block.filled == 0 && !grids.base.plain {
+            if block.filled == 0 && !grids.base.published {
                 let skipped = self.skip(grid, &mut index, up);
                 let (axis, left) = skipped;
                 if V::WATCHES {
@@ -143,7 +143,7 @@ impl<V: Visitor> Walker<'_, V> {
                 self.report(grid, index, entered, left, axis, level);
             }
             let go_on = match grids.content(block.filled, block.first, bit) {
-                Content::Nothing => true,
+                Content::Empty => true,
                 Content::Primitives(ids) => self.search.visit(ids),
                 Content::Grid(inner) => self.grid(inner, entered, level + 1),
             };
@@ -197,7 +197,7 @@ impl<V: Visitor> Walker<'_, V> {
                     let (place, bit) = grid.place([i, j, k]);
                     let block = grids.blocks[place];
                     let content = grids.content(block.filled, block.first, bit);
-                    if matches!(content, Content::Nothing)
+                    if matches!(content, Content::Empty)
                         || self
                             .search
                             .walk
@@ -208,7 +208,7 @@ impl<V: Visitor> Walker<'_, V> {
                     }
                     self.search.stats.node_visits += 1;
                     let go_on = match content {
-                        Content::Nothing => true,
+                        Content::Empty => true,
                         Content::Primitives(ids) => self.search.visit(ids),
                         Content::Grid(inner) => self.thick(inner),
                     };

@@ -55,7 +55,7 @@ impl<V: Visitor> Walker<'_, V> {
             self.advance(&mut point, &leaf.bounds, &leaving, plane);
             entered = leaving.t;
             level = match kind {
-                Traversal::Neighbours => self.common(&path, level, leaving.axis),
+                Traversal::Neighbours => self.nearest_ancestor(&path, level, leaving.axis),
                 _ => 0,
             };
         }
@@ -106,7 +106,7 @@ impl<V: Visitor> Walker<'_, V> {
 
     /// The level of the nearest ancestor that the ray does not leave through the same face.
     #[inline(always)]
-    fn common(
+    fn nearest_ancestor(
         &self,
         path: &[Ancestor; MOST_LEVELS as usize + 1],
         mut level: usize,
