@@ -97,9 +97,9 @@ impl Gauge {
 
     /// The value, with the bits of [`Gauge::value_and_gradient`], where it takes no powers: on the flat parts of bodies with sharp edges.
     #[inline]
-    pub(super) fn plain_value(&self, point: DVec3) -> Option<f64> {
+    pub(super) fn value_without_powers(&self, point: DVec3) -> Option<f64> {
         let a = point.abs();
-        self.section.plain(self.outline.plain(a.x, a.y)?, a.z)
+        self.section.dominant(self.outline.dominant(a.x, a.y)?, a.z)
     }
 
     /// The value at a corner of the box around the body: no point of the box has a greater one.
@@ -322,7 +322,7 @@ impl Norm {
 
     /// The norm, with the bits of [`Norm::combine`], where one number vanishes beside the other.
     #[inline]
-    fn plain(&self, a: f64, b: f64) -> Option<f64> {
+    fn dominant(&self, a: f64, b: f64) -> Option<f64> {
         let (large, small) = if a > b { (a, b) } else { (b, a) };
         (small / large <= self.negligible).then_some(large)
     }
@@ -431,7 +431,7 @@ mod tests {
                     _ => f64::from(step) / 4000.0,
                 };
                 let point = DVec3::new(ratio * 0.7, -0.7, 0.7 - 2e-4 * f64::from(step));
-                if let Some(value) = gauge.plain_value(point) {
+                if let Some(value) = gauge.value_without_powers(point) {
                     assert_eq!(value, gauge.value_and_gradient(point).0, "{p} {point}");
                     plain += 1;
                 }

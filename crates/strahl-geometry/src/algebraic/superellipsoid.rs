@@ -245,7 +245,7 @@ impl Superellipsoid {
             let point = start + direction * s;
             if self
                 .gauge
-                .plain_value(point)
+                .value_without_powers(point)
                 .is_some_and(|value| value <= level)
             {
                 return Some(s);

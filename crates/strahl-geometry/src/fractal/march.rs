@@ -1,6 +1,6 @@
 //! A ray on its way through the cells that may have a surface of a set of orbits.
 
-use super::orbit_set::{AHEAD, BALL, Event, OrbitSet, Places, SURFACE};
+use super::orbit_set::{BALL, Event, LINE_BATCH, OrbitSet, Places, SURFACE};
 use crate::implicit::{Content, Visitor};
 use std::ops::ControlFlow;
 use strahl_math::roots::find_crossing;
@@ -145,20 +145,20 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     }
 
     /// Looks at a place and goes there.
-    fn look(&mut self, to: f64) -> ControlFlow<()> {
+    fn step_to(&mut self, to: f64) -> ControlFlow<()> {
         let place = self.set.place(self.at(to));
         self.go(to, place.value, self.step(place.reach))
     }
 
     /// Goes to a place, and on from there as far as places that are looked at together show that the line is clear.
     fn advance(&mut self, to: f64) -> ControlFlow<()> {
-        let ahead = self.ahead(to);
+        let ahead = self.next_places(to);
         let mut places = Places::default();
         if !self
             .set
             .store_places((self.origin, self.direction), &ahead, &mut places)
         {
-            return self.look(to);
+            return self.step_to(to);
         }
         let (clear, count) = self.clear_until(&ahead, &places);
         let (values, all) = (&places.values[..count], &ahead[..count]);
@@ -175,15 +175,20 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// How far the line is clear from each place on, and how many of the places the march may go to: the clear parts around neighbours
     /// have to touch.
     #[inline(always)]
-    fn clear_until(&self, ahead: &[f64; AHEAD], places: &Places) -> ([f64; AHEAD], usize) {
-        let (mut clear, mut backs) = ([0.0; AHEAD], [0.0; AHEAD]);
-        for k in 0..AHEAD {
+    fn clear_until(
+        &self,
+        ahead: &[f64; LINE_BATCH],
+        places: &Places,
+    ) -> ([f64; LINE_BATCH], usize) {
+        let (mut clear, mut backs) = ([0.0; LINE_BATCH], [0.0; LINE_BATCH]);
+        for k in 0..LINE_BATCH {
             let (step, is_near) = self.step(places.reaches[k]);
             clear[k] = ahead[k] + step;
             backs[k] = ahead[k] - if is_near { 0.0 } else { step };
         }
         let mut count = 1;
-        while count < AHEAD && backs[count] <= clear[count - 1] && ahead[count] <= self.length {
+        while count < LINE_BATCH && backs[count] <= clear[count - 1] && ahead[count] <= self.length
+        {
             count += 1;
         }
         (clear, count)
@@ -195,8 +200,8 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         &mut self,
         places: &[f64],
         values: &[f64],
-        clear: &[f64; AHEAD],
-        reaches: &[f64; AHEAD],
+        clear: &[f64; LINE_BATCH],
+        reaches: &[f64; LINE_BATCH],
     ) {
         let last = places.len() - 1;
         let (step, is_near) = self.step(reaches[last]);
@@ -210,7 +215,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
 
     /// A place and further ones, as far from each other as they will be clear if steps go on to grow or shrink as the last one did.
     #[inline(always)]
-    fn ahead(&self, s: f64) -> [f64; AHEAD] {
+    fn next_places(&self, s: f64) -> [f64; LINE_BATCH] {
         let (shortest, longest) = self.steps;
         let trend = between(self.last / self.before, TREND);
         let (t2, t4) = (trend * trend, (trend * trend) * (trend * trend));
@@ -220,8 +225,8 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         for step in &mut free {
             *step *= self.clear - self.s;
         }
-        let mut ways = [0.0; AHEAD - 1];
-        for k in 0..AHEAD - 1 {
+        let mut ways = [0.0; LINE_BATCH - 1];
+        for k in 0..LINE_BATCH - 1 {
             let (step, next) = (free[k], free[k + 1]);
             let step = if step < shortest { shortest } else { step };
             let step = if step > longest { longest } else { step };
@@ -229,8 +234,8 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
             let overlap = if next > shortest { overlap } else { 0.0 };
             ways[k] = step + OVERLAP * overlap;
         }
-        let mut places = [s; AHEAD];
-        for k in 1..AHEAD {
+        let mut places = [s; LINE_BATCH];
+        for k in 1..LINE_BATCH {
             places[k] = places[k - 1] + ways[k - 1];
         }
         places
@@ -239,7 +244,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// Looks at the end.
     pub(super) fn finish(&mut self) -> ControlFlow<()> {
         if self.s < self.length {
-            self.look(self.length)?;
+            self.step_to(self.length)?;
         }
         ControlFlow::Continue(())
     }

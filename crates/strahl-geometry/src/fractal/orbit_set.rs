@@ -41,13 +41,13 @@ pub(super) struct Place {
 
 /// How many points of a line are looked at together: two vectors. The steps of an orbit wait for each other, so that two vectors take hardly
 /// longer than one.
-pub(super) const AHEAD: usize = 8;
+pub(super) const LINE_BATCH: usize = 8;
 
 /// How several points of a line lie to the surface, as [`Place`]s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Places {
-    pub(super) values: [f64; AHEAD],
-    pub(super) reaches: [f64; AHEAD],
+    pub(super) values: [f64; LINE_BATCH],
+    pub(super) reaches: [f64; LINE_BATCH],
 }
 
 /// What is the same for all sets: the ball that they are searched in, and what is known of it.
@@ -92,7 +92,12 @@ pub(super) trait OrbitSet: Sized {
     /// Stores how points of a line lie to the surface, those at `origin + direction s`, if that takes little more time than one;
     /// else does nothing and returns `false`.
     // In place: a result of this size would be read before its stores have ended.
-    fn store_places(&self, _line: (DVec3, DVec3), _s: &[f64; AHEAD], _out: &mut Places) -> bool {
+    fn store_places(
+        &self,
+        _line: (DVec3, DVec3),
+        _s: &[f64; LINE_BATCH],
+        _out: &mut Places,
+    ) -> bool {
         false
     }
     /// Whether the points up to this distance from a point are all inside of the set or all outside.

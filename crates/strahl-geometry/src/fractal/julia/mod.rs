@@ -8,7 +8,7 @@ mod real;
 mod tests;
 
 use super::orbit_search;
-use super::orbit_set::{AHEAD, BALL, BallSearch, OrbitSet, Place, Places};
+use super::orbit_set::{BALL, BallSearch, LINE_BATCH, OrbitSet, Place, Places};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
@@ -169,7 +169,7 @@ impl OrbitSet for Julia {
     fn store_places(
         &self,
         (origin, direction): (DVec3, DVec3),
-        s: &[f64; AHEAD],
+        s: &[f64; LINE_BATCH],
         out: &mut Places,
     ) -> bool {
         let line = [origin.to_array(), direction.to_array()];

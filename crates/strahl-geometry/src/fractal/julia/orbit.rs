@@ -3,7 +3,7 @@
 use super::complex::{Complex, HypercomplexFunction};
 use super::power::{Degree, Number, Powers};
 use super::real::{Lanes, Pair, Real};
-use super::{AHEAD, JuliaAlgebra, Place, Places, QuaternionFunction};
+use super::{JuliaAlgebra, LINE_BATCH, Place, Places, QuaternionFunction};
 use std::f64::consts::SQRT_2;
 use strahl_math::{DVec3, det};
 use strahl_simd::{Isa, Simd, dispatch};
@@ -162,7 +162,7 @@ impl Rule {
         &self,
         slice: &Slice,
         [origin, direction]: [[f64; 3]; 2],
-        s: &[f64; AHEAD],
+        s: &[f64; LINE_BATCH],
         out: &mut Places,
     ) -> bool {
         match self.algebra {
@@ -552,7 +552,12 @@ mod tests {
             points: 8,
             exit: 4.0,
         };
-        assert!(!rule.store_places(&slice, [[0.1; 3]; 2], &[0.1; AHEAD], &mut Places::default()));
+        assert!(!rule.store_places(
+            &slice,
+            [[0.1; 3]; 2],
+            &[0.1; LINE_BATCH],
+            &mut Places::default()
+        ));
     }
 
     #[test]
