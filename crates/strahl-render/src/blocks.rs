@@ -252,7 +252,7 @@ pub(crate) enum Flats<'b> {
 }
 
 /// Visibility and flags of the primitives that are tested in blocks, if they are the same for all.
-pub(crate) fn common(lists: &Lists<'_>) -> Option<(u8, u8)> {
+pub(crate) fn uniform_flags(lists: &Lists<'_>) -> Option<(u8, u8)> {
     let found = |p: &Prim| match p.kind() {
         PrimKind::Shape(index) => {
             let shape = &lists.shapes[index as usize].shape;

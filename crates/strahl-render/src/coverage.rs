@@ -31,7 +31,8 @@ pub(crate) struct Clear {
 }
 
 impl Clear {
-    const NOTHING: Self = Self {
+    /// The background does not show.
+    const OPAQUE: Self = Self {
         light: Color::BLACK,
         share: 0.0,
     };
@@ -82,7 +83,7 @@ impl Coverage {
 
     /// Takes note of the next node of the trees, whose ray hits something.
     pub(crate) fn enter(&mut self) {
-        self.nodes.push(Clear::NOTHING);
+        self.nodes.push(Clear::OPAQUE);
     }
 
     /// The same for a ray that hits nothing. Returns the light along it.

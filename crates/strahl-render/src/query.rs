@@ -252,7 +252,7 @@ impl<Q: Query> Search<'_, '_, Q> {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),
         };
-        let unfiltered = group.common.is_some_and(|(visible, flags)| {
+        let unfiltered = group.uniform_flags.is_some_and(|(visible, flags)| {
             visible & self.class != 0 && self.query.is_unfiltered(flags)
         });
         let mut alone = None;

@@ -35,7 +35,7 @@ pub(crate) struct RenderGroup {
     pub(crate) stopping: Option<Box<Part>>,
     pub(crate) transmitting: Option<Box<Part>>,
     /// Visibility and flags of the primitives that are tested in blocks, if these are the same for all of them.
-    pub(crate) common: Option<(u8, u8)>,
+    pub(crate) uniform_flags: Option<(u8, u8)>,
     /// Whether it has triangles, which are tested with the shear of the ray.
     pub(crate) sheared: bool,
     /// The primitives in the order of the accelerator's leaves.

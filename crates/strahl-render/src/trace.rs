@@ -144,7 +144,7 @@ impl<'s> TreeTracer<'s> {
                 ..TexturePaint::default()
             },
             paints: KnownPaints::new(scene),
-            roots: [Sample::NOTHING; PACKET],
+            roots: [Sample::BLACK; PACKET],
             keeps_first: false,
             first: None,
             deepest: 0,
@@ -212,7 +212,7 @@ impl<'s> TreeTracer<'s> {
         let mut trace = |ray: &Ray| self.trace(ray, &mut ()).sample();
         let samples: ArrayVec<Sample, PACKET> = rays
             .iter()
-            .map(|ray| ray.as_ref().map_or(Sample::NOTHING, &mut trace))
+            .map(|ray| ray.as_ref().map_or(Sample::BLACK, &mut trace))
             .collect();
         let roots = &mut self.roots[..samples.len()];
         roots.copy_from_slice(&samples);
@@ -255,7 +255,7 @@ impl<'s> TreeTracer<'s> {
         self.nodes.clear();
         self.gathered.clear();
         (self.keeps_first, self.first, self.deepest) = (false, None, 0);
-        self.roots = [Sample::NOTHING; PACKET];
+        self.roots = [Sample::BLACK; PACKET];
         if let Some(coverage) = &mut self.coverage {
             coverage.restart();
         }

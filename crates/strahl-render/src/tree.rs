@@ -186,7 +186,7 @@ pub(crate) fn explain_from(
                     let mut inner = |&(dx, dy): &(f64, f64)| Sample::from(sample(1, dx, dy));
                     let means =
                         division.means(|places| Some(places.iter().map(&mut inner).collect()));
-                    means.map_or(Sample::NOTHING, |means| means[0])
+                    means.map_or(Sample::BLACK, |means| means[0])
                 }
                 _ => mean_of_corners(corners),
             };

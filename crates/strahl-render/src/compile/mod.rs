@@ -158,13 +158,13 @@ impl Prepared {
             blocks.gather_pages();
             let [stopping, transmitting] =
                 [Prim::STOPS, Prim::TRANSMITS].map(|flag| part(kind, &g, flag));
-            let common = crate::blocks::common(&g.lists());
+            let uniform_flags = crate::blocks::uniform_flags(&g.lists());
             let mut instances = g.instances;
             for instance in &mut instances {
                 instance.group = renumber(instance.group);
             }
             RenderGroup {
-                common,
+                uniform_flags,
                 sheared: blocks.has_triangles() || !g.meshes.is_empty(),
                 spheres: g
                     .spheres

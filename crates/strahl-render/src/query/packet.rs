@@ -245,7 +245,7 @@ impl<'s> Shared<'_, 's> {
         }
         let class = self.class;
         let mut visitor = Together {
-            unfiltered: group.common.is_some_and(|(visible, flags)| {
+            unfiltered: group.uniform_flags.is_some_and(|(visible, flags)| {
                 visible & class != 0 && queries[0].is_unfiltered(flags)
             }),
             shared: &mut *self,

@@ -30,7 +30,7 @@ pub(super) struct GroupVisitor<'v, 'a, 's, Q> {
     pub(super) from_prim: u32,
     pub(super) base: u64,
     pub(super) t_max: f64,
-    /// Whether hits in blocks need no filter (see [`RenderGroup::common`]).
+    /// Whether hits in blocks need no filter (see [`RenderGroup::uniform_flags`]).
     pub(super) unfiltered: bool,
 }
 

@@ -138,7 +138,7 @@ impl PixelTracer<'_> {
             let places = pixels
                 .iter()
                 .map(|&(x, y)| (f64::from(x) + dx, f64::from(y) + dy));
-            let mut values = vec![shown(Sample::NOTHING); pixels.len()];
+            let mut values = vec![shown(Sample::BLACK); pixels.len()];
             self.means(places, |number, sample| {
                 let (x, y) = pixels[number];
                 values[tile.index(x, y)] = shown(sample);
@@ -146,7 +146,7 @@ impl PixelTracer<'_> {
             return self.end_tile(tile, None, values, Vec::new());
         }
         let mask = self.beam_mask(tile);
-        let mut values = vec![shown(Sample::NOTHING); tile.pixels() as usize];
+        let mut values = vec![shown(Sample::BLACK); tile.pixels() as usize];
         for square in squares(tile) {
             if self.leaves() {
                 break;
@@ -235,7 +235,7 @@ impl PixelTracer<'_> {
         self.start_tile();
         let small = tile.width <= TILE && tile.height <= TILE;
         let mask = small.then(|| self.beam_mask(tile));
-        let mut values = vec![Sample::NOTHING; points.len()];
+        let mut values = vec![Sample::BLACK; points.len()];
         let mut costs = Vec::new();
         let mut packet = Packet::new();
         for (index, &(x, y)) in points.iter().enumerate() {
@@ -326,7 +326,7 @@ impl PixelTracer<'_> {
         mask: &BeamMask,
         places: &[(f64, f64)],
     ) -> Option<Vec<Sample>> {
-        let mut samples = vec![Sample::NOTHING; places.len()];
+        let mut samples = vec![Sample::BLACK; places.len()];
         let mut packet = Packet::new();
         for (number, (dx, dy)) in places.iter().enumerate() {
             if number.is_multiple_of(PACKET) && self.leaves() {
@@ -505,7 +505,7 @@ impl PixelTracer<'_> {
     /// The radiance at a position in the picture; `keep` says whether to store the hit's other data for the pixel.
     pub(super) fn sample(&mut self, x: f64, y: f64, keep: bool) -> Sample {
         if self.bundled {
-            let mut mean = Sample::NOTHING;
+            let mut mean = Sample::BLACK;
             self.means([(x, y)].into_iter(), |_, sample| mean = sample);
             return mean;
         }

@@ -77,7 +77,7 @@ pub(crate) fn refined_quadrants(
     let margin = tile.grown(1, options.width, options.height);
     let mut first = Lattice {
         region: margin,
-        samples: try_filled(margin, Sample::NOTHING)?,
+        samples: try_filled(margin, Sample::BLACK)?,
     };
     for tile in tiles(margin, options.tile_order) {
         let result = tracer.centers(tile);

@@ -209,7 +209,7 @@ impl PixelTracer<'_> {
             }
         }
         self.trace_packet(&mut packet, |part, sample| add(list, part, sample));
-        let mut means = vec![Sample::NOTHING; places.len()];
+        let mut means = vec![Sample::BLACK; places.len()];
         self.means(places.into_iter(), |n, mean| means[n] = mean);
         for (part, mean) in parts.into_iter().zip(means) {
             add(list, part, mean);

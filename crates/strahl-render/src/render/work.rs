@@ -68,7 +68,7 @@ impl Work {
             None => None,
             Some(region) => Some(Lattice {
                 region,
-                samples: try_filled(region, Sample::NOTHING)?,
+                samples: try_filled(region, Sample::BLACK)?,
             }),
         };
         let costs = match options.costs {

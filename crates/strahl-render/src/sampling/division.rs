@@ -151,7 +151,7 @@ impl<'a> Division<'a> {
 
     /// The means of the first squares.
     fn summed(self, first: usize) -> Vec<Sample> {
-        let mut means = vec![Sample::NOTHING; self.squares.len()];
+        let mut means = vec![Sample::BLACK; self.squares.len()];
         // Quarters come behind their squares.
         for (number, square) in self.squares.iter().enumerate().rev() {
             let [a, b, c, d] = match square.quarters {
@@ -244,7 +244,7 @@ mod tests {
     fn nothing_is_returned_by_a_division_that_is_left() {
         let refinement = Refinement::DEFAULT;
         let mut division = Division::new(&refinement, WorkingSpace::Linear);
-        let (dark, bright) = (Sample::NOTHING, Sample::from(Color::WHITE));
+        let (dark, bright) = (Sample::BLACK, Sample::from(Color::WHITE));
         division.add((0, 0), [dark, bright, dark, bright]);
         assert_eq!(division.means(|_| None), None);
     }

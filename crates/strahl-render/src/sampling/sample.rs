@@ -11,7 +11,8 @@ pub(crate) struct Sample {
 }
 
 impl Sample {
-    pub(crate) const NOTHING: Self = Self {
+    /// Opaque black.
+    pub(crate) const BLACK: Self = Self {
         color: Color::BLACK,
         clear: 0.0,
     };

@@ -149,7 +149,7 @@ fn traced_in_batches<'s>(
         .iter()
         .map(|ray| match ray {
             Some(ray) => single.trace(ray, &mut ()).sample(),
-            None => Sample::NOTHING,
+            None => Sample::BLACK,
         })
         .collect();
     for size in [1, 2, 3, 7, PACKET] {
