@@ -70,6 +70,15 @@ pub(super) struct TileList {
     pub(super) feeds: Vec<ArrayVec<u32, 4>>,
 }
 
+impl TileList {
+    /// The tiles that are not done, by number.
+    fn pending(&self) -> Vec<usize> {
+        (0..self.done.len())
+            .filter(|index| !self.done[*index])
+            .collect()
+    }
+}
+
 /// How the work at a pass has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
@@ -108,14 +117,15 @@ impl Drop for StopAtEnd<'_> {
     }
 }
 
-struct Shared<'a, S> {
+/// What has come of the tiles.
+struct Results<'a, S> {
     canvas: &'a mut Canvas,
     done: &'a mut [bool],
     parts: &'a mut [Part],
     store: S,
 }
 
-impl<S> Shared<'_, S> {
+impl<S> Results<'_, S> {
     /// Adds a finished tile, and returns the parts of the film that are complete with it.
     fn take<T>(&mut self, index: usize, result: TileResult<T>, feeds: &[u32]) -> ArrayVec<u32, 4>
     where
@@ -179,99 +189,55 @@ impl Turn<'_, '_> {
             list,
             mut sink,
         } = self;
+        let pending = list.pending();
+        crew.progress.pass(pass.number, pass.of, pending.len());
+        if let Some(sink) = &mut sink {
+            // Those that need no rays, and those that were ready when a sink stopped the render.
+            let all = begin(&mut **sink, &pass, &mut list.parts, &canvas.film);
+            if all.is_break() {
+                return Ended::Stopped;
+            }
+        }
         let TileList {
             tiles,
             done,
             parts,
             feeds,
         } = list;
-        let pending: Vec<usize> = (0..done.len()).filter(|index| !done[*index]).collect();
-        crew.progress.pass(pass.number, pass.of, pending.len());
-        if let Some(sink) = &mut sink {
-            // Those that need no rays, and those that were ready when a sink stopped the render.
-            let all = begin(&mut **sink, &pass, parts, &canvas.film);
-            if all.is_break() {
-                return Ended::Stopped;
-            }
-        }
-        let mut delivered = parts.iter().filter(|part| part.delivered).count();
-        let of = parts.len();
+        let shared = Shared {
+            crew,
+            options,
+            tiles,
+            feeds,
+            pending,
+            next: AtomicUsize::new(0),
+            stop: AtomicBool::new(false),
+            results: Mutex::new(Results {
+                canvas,
+                done,
+                parts,
+                store,
+            }),
+        };
         let watched = sink.is_some();
-        let (stop, next) = (AtomicBool::new(false), AtomicUsize::new(0));
         let (sender, receiver) = mpsc::channel();
         let sender = watched.then_some(sender);
-        let shared = Mutex::new(Shared {
-            canvas,
-            done,
-            parts,
-            store,
-        });
-        let work = || {
-            let _farewell = sender.as_ref().map(Farewell);
-            let mut tracer = PixelTracer::new(crew.scene, crew.rays, options, crew.progress);
-            while !stop.load(Ordering::Relaxed) && !crew.progress.cancelled() {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                let Some(&index) = pending.get(number) else {
-                    break;
-                };
-                let result = trace(&mut tracer, tiles[index]);
-                if tracer.left_tile() {
-                    break;
-                }
-                crew.progress.tile(result.counts.total());
-                let ready = lock(&shared).take(index, result, &feeds[index]);
-                if let Some(sender) = &sender {
-                    for part in ready {
-                        // Without a receiver the sink has failed, and `stop` is set.
-                        let _ = sender.send(Message::Ready(part));
-                    }
-                }
-                // Other work of the same threads goes first: it is newer.
-                rayon::yield_now();
-            }
-        };
-        let mut broke = false;
-        let mut deliver = |sink: Option<&mut (dyn Sink + '_)>| {
-            let Some(sink) = sink else {
-                return;
-            };
-            let _stop = StopAtEnd(&stop);
-            let mut running = crew.threads();
-            while running > 0 {
-                match receiver.recv() {
-                    Ok(Message::Ready(number)) if !broke => {
-                        let (film, part) = {
-                            let mut shared = lock(&shared);
-                            let part = &mut shared.parts[number as usize];
-                            part.delivered = true;
-                            let part = *part;
-                            (shared.canvas.film.cut(part.region), part)
-                        };
-                        delivered += 1;
-                        broke = tile(sink, pass, &film, &part, (delivered, of)).is_break();
-                        if broke {
-                            stop.store(true, Ordering::Relaxed);
-                        }
-                    }
-                    Ok(Message::Ready(_)) => {}
-                    Ok(Message::Ended) => running -= 1,
-                    Err(_) => break,
-                }
-            }
-        };
-        match crew.pool {
+        let work = || shared.work(&trace, sender.as_ref());
+        let deliver = || sink.is_some_and(|sink| shared.deliver(sink, pass, &receiver).is_break());
+        let broke = match crew.pool {
             Some(pool) => pool.in_place_scope(|scope| {
                 scope.spawn_broadcast(|_, _| work());
-                deliver(sink);
+                deliver()
             }),
             None => {
                 work();
-                deliver(sink);
+                deliver()
             }
-        }
-        let shared = lock(&shared);
-        let traced = shared.done.iter().all(|done| *done);
-        match traced && (!watched || delivered == of) {
+        };
+        let results = lock(&shared.results);
+        let traced = results.done.iter().all(|done| *done);
+        let delivered = results.parts.iter().all(|part| part.delivered);
+        match traced && (!watched || delivered) {
             true if broke => Ended::CompleteAndStopped,
             true => Ended::Complete,
             false => Ended::Stopped,
@@ -279,11 +245,97 @@ impl Turn<'_, '_> {
     }
 }
 
+/// What the threads that trace a pass have in common.
+struct Shared<'a, S> {
+    crew: &'a Crew<'a>,
+    options: &'a RenderOptions,
+    tiles: &'a [Region],
+    feeds: &'a [ArrayVec<u32, 4>],
+    /// The tiles that are to be traced.
+    pending: Vec<usize>,
+    /// Which of these comes next.
+    next: AtomicUsize,
+    stop: AtomicBool,
+    results: Mutex<Results<'a, S>>,
+}
+
+impl<S> Shared<'_, S> {
+    /// Traces tiles until none is left or there is a stop: what each thread does.
+    fn work<T>(
+        &self,
+        trace: &impl Fn(&mut PixelTracer<'_>, Region) -> TileResult<T>,
+        sender: Option<&mpsc::Sender<Message>>,
+    ) where
+        S: FnMut(&mut Film, TileResult<T>, &[Region]),
+    {
+        let crew = self.crew;
+        let _farewell = sender.map(Farewell);
+        let mut tracer = PixelTracer::new(crew.scene, crew.rays, self.options, crew.progress);
+        while !self.stop.load(Ordering::Relaxed) && !crew.progress.cancelled() {
+            let number = self.next.fetch_add(1, Ordering::Relaxed);
+            let Some(&index) = self.pending.get(number) else {
+                break;
+            };
+            let result = trace(&mut tracer, self.tiles[index]);
+            if tracer.left_tile() {
+                break;
+            }
+            crew.progress.tile(result.counts.total());
+            let ready = lock(&self.results).take(index, result, &self.feeds[index]);
+            if let Some(sender) = sender {
+                for part in ready {
+                    // Without a receiver the sink has failed, and `stop` is set.
+                    let _ = sender.send(Message::Ready(part));
+                }
+            }
+            // Other work of the same threads goes first: it is newer.
+            rayon::yield_now();
+        }
+    }
+
+    /// Hands parts of the film to a sink as they get complete, until all threads have ended. `Break` if the sink wants no more.
+    fn deliver(
+        &self,
+        sink: &mut dyn Sink,
+        pass: Pass,
+        receiver: &mpsc::Receiver<Message>,
+    ) -> ControlFlow<()> {
+        let _stop = StopAtEnd(&self.stop);
+        let mut flow = ControlFlow::Continue(());
+        let (mut done, of) = delivered(lock(&self.results).parts);
+        let mut running = self.crew.threads();
+        while running > 0 {
+            match receiver.recv() {
+                Ok(Message::Ready(number)) if flow.is_continue() => {
+                    let (film, part) = self.take_part(number);
+                    done += 1;
+                    flow = tile(sink, pass, &film, &part, (done, of));
+                    if flow.is_break() {
+                        self.stop.store(true, Ordering::Relaxed);
+                    }
+                }
+                Ok(Message::Ready(_)) => {}
+                Ok(Message::Ended) => running -= 1,
+                Err(_) => break,
+            }
+        }
+        flow
+    }
+
+    /// A complete part, which counts as delivered from now on, and its pixels.
+    fn take_part(&self, number: u32) -> (Film, Part) {
+        let mut results = lock(&self.results);
+        let part = &mut results.parts[number as usize];
+        part.delivered = true;
+        let part = *part;
+        (results.canvas.film.cut(part.region), part)
+    }
+}
+
 /// Hands over the beginning of a pass and all parts that are complete already.
 fn begin(sink: &mut dyn Sink, pass: &Pass, parts: &mut [Part], film: &Film) -> ControlFlow<()> {
     sink.pass(pass)?;
-    let of = parts.len();
-    let mut done = parts.iter().filter(|part| part.delivered).count();
+    let (mut done, of) = delivered(parts);
     for part in parts.iter_mut().filter(|p| p.waits == 0 && !p.delivered) {
         part.delivered = true;
         done += 1;
@@ -292,6 +344,13 @@ fn begin(sink: &mut dyn Sink, pass: &Pass, parts: &mut [Part], film: &Film) -> C
     ControlFlow::Continue(())
 }
 
+/// How many parts are delivered, and of how many.
+fn delivered(parts: &[Part]) -> (usize, usize) {
+    let done = parts.iter().filter(|part| part.delivered).count();
+    (done, parts.len())
+}
+
+/// Hands over a part of the film.
 fn tile(
     sink: &mut dyn Sink,
     pass: Pass,
