@@ -5,6 +5,7 @@ mod plan;
 mod probe;
 mod refine;
 mod rounds;
+mod stage;
 mod work;
 
 pub(crate) use crew::Crew;

@@ -3,7 +3,7 @@
 use super::crew::{Canvas, Ended, Part, TileList, Turn};
 use super::plan::{Stage, edge, points};
 use super::refine::Comparison;
-use super::{Crew, Lattice, RenderError, RenderOptions, Rendered, Shown, mean_of_corners};
+use super::{Crew, Lattice, RenderError, RenderOptions, Rendered};
 use crate::cost::PixelCost;
 use crate::film::{Film, Region, try_filled};
 use crate::sampling::{Quadrants, Sample, Sampling};
@@ -13,7 +13,6 @@ use crate::trace::RayCounts;
 use arrayvec::ArrayVec;
 use std::collections::HashMap;
 use strahl_accel::TraversalStats;
-use strahl_scene::WorkingSpace;
 
 /// What a film that is not finished has of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -186,135 +185,35 @@ impl Work {
         crew: &Crew<'_>,
         sink: Option<&mut (dyn Sink + '_)>,
     ) -> Ended {
-        let (pass, options) = (self.pass(), self.options.clone());
-        let space = options.trace.space();
-        let origin = (self.canvas.film.region.x, self.canvas.film.region.y);
+        let pass = self.pass();
         let known = match stage {
             Stage::First { step } | Stage::Corners { step } => self.known(step),
             _ => None,
         };
-        let Self {
-            canvas,
-            list: Some(list),
-            lattice,
-            rough,
-            ..
-        } = self
-        else {
+        let Some(list) = &mut self.list else {
             return Ended::Complete;
         };
-        let mut none = Lattice {
-            region: canvas.film.region,
-            samples: vec![],
-        };
-        let keeps = lattice.is_some();
-        let lattice = lattice.as_mut().unwrap_or(&mut none);
         let turn = Turn {
             crew,
-            options: &options,
+            options: &self.options,
             pass,
-            canvas,
+            canvas: &mut self.canvas,
             list,
             sink,
         };
-        match stage {
-            Stage::Pixels => turn.trace(
-                |tracer, tile| tracer.centers(tile).with(|means| Shown::all(&means, space)),
-                |film, result, _| film.set_tile(result.tile, &result.values),
-            ),
-            Stage::First { step: 1 } if known.is_none() => turn.trace(
-                |tracer, tile| {
-                    tracer.centers(tile).with(|samples| {
-                        let shown = Shown::all(&samples, space);
-                        vec![(samples, shown)]
-                    })
-                },
-                |film, result, _| {
-                    for (samples, shown) in &result.values {
-                        lattice.put_tile(result.tile, samples);
-                        film.set_tile(result.tile, shown);
-                    }
-                },
-            ),
-            Stage::First { step } => turn.trace(
-                |tracer, tile| tracer.points(tile, points(tile, origin, step, known), false),
-                |film, result, _| {
-                    for (place, sample) in result.places().zip(&result.values) {
-                        if keeps {
-                            lattice.put(place, *sample);
-                        }
-                        film.fill(block(place, step), Shown::of(*sample, space));
-                    }
-                },
-            ),
-            Stage::Corners { step: 1 } => turn.trace(
-                |tracer, tile| match known {
-                    Some(_) => tracer.points(tile, points(tile, origin, 1, known), true),
-                    None => tracer.first_pass(
-                        tile,
-                        |tracer, corners| tracer.tree.uniform_miss(corners as usize),
-                        |tracer, x, y| tracer.corner(x, y),
-                        |sample| sample,
-                    ),
-                },
-                |film, result, ready| {
-                    for (place, sample) in result.places().zip(&result.values) {
-                        lattice.put(place, *sample);
-                    }
-                    for part in ready {
-                        let means = part
-                            .positions()
-                            .map(|(x, y)| mean_of_corners(lattice.around(x, y)));
-                        film.set_tile(*part, &Shown::all(&means.collect::<Vec<_>>(), space));
-                    }
-                },
-            ),
-            Stage::Corners { step } => turn.trace(
-                |tracer, tile| tracer.points(tile, points(tile, origin, step, known), true),
-                |film, result, _| {
-                    for (place, sample) in result.places().zip(&result.values) {
-                        lattice.put(place, *sample);
-                        film.fill(block(place, step), Shown::of(*sample, space));
-                    }
-                },
-            ),
-            Stage::Rest => {
-                let first = &*lattice;
-                turn.trace(
-                    |tracer, tile| {
-                        let means = tracer.tile(
-                            tile,
-                            |_, _| None,
-                            |tracer, x, y| tracer.remaining(first.at(x, y), x, y).sample(),
-                        );
-                        means.with(|means| Shown::all(&means, space))
-                    },
-                    |film, result, _| film.set_tile(result.tile, &result.values),
-                )
+        match (stage, &mut self.lattice) {
+            (Stage::Pixels, _) => turn.pixels(),
+            (Stage::First { step: 1 }, Some(lattice)) if known.is_none() => turn.first(lattice),
+            (Stage::First { step }, lattice) => turn.coarse(step, known, false, lattice.as_mut()),
+            (Stage::Corners { step: 1 }, Some(lattice)) => turn.corners(known, lattice),
+            (Stage::Corners { step }, lattice) => turn.coarse(step, known, true, lattice.as_mut()),
+            (Stage::Rest, Some(lattice)) => turn.rest(lattice),
+            (Stage::Refine(refinement), Some(lattice)) => {
+                turn.refine(&refinement, lattice, &self.rough)
             }
-            Stage::Refine(refinement) => {
-                let (first, rough) = (&*lattice, &*rough);
-                let quadrants = |x, y| rough[first.region.index(x, y)];
-                let comparison = Comparison::new(&refinement, space);
-                turn.trace(
-                    |tracer, tile| {
-                        let pixels =
-                            tracer.refined(tile, &comparison, quadrants, |x, y| first.at(x, y));
-                        pixels.with(|pixels| {
-                            let mean = |(mean, _)| mean;
-                            pixels.into_iter().map(|pixel| pixel.map(mean)).collect()
-                        })
-                    },
-                    |film, result, _| set_some(film, result.tile, &result.values, space),
-                )
-            }
-            Stage::Divide(refinement) => {
-                let lattice = &*lattice;
-                turn.trace(
-                    |tracer, tile| tracer.divided(tile, &refinement, |x, y| lattice.around(x, y)),
-                    |film, result, _| set_some(film, result.tile, &result.values, space),
-                )
-            }
+            (Stage::Divide(refinement), Some(lattice)) => turn.divide(&refinement, lattice),
+            // All plans with these stages have a lattice.
+            (_, None) => Ended::Complete,
         }
     }
 
@@ -361,30 +260,6 @@ impl Work {
             }
         }
         states
-    }
-}
-
-/// The pixels that a sample of this step shows.
-fn block((x, y): (u32, u32), step: u32) -> Region {
-    Region {
-        x,
-        y,
-        width: step,
-        height: step,
-    }
-}
-
-/// Writes the pixels that have a new value.
-fn set_some(film: &mut Film, tile: Region, values: &[Option<Sample>], space: WorkingSpace) {
-    let means: Vec<Sample> = values.iter().flatten().copied().collect();
-    let mut shown = Shown::all(&means, space).into_iter();
-    for (place, value) in tile.positions().zip(values) {
-        if value.is_some()
-            && let Some(shown) = shown.next()
-            && film.region.contains(place.0, place.1)
-        {
-            film.set(place, shown);
-        }
     }
 }
 
