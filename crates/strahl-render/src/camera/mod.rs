@@ -3,13 +3,14 @@
 mod bundle;
 mod lens;
 mod mesh;
+mod wide;
 
 pub(crate) use bundle::{NextRays, RayBundle};
 
 use lens::LensSampler;
 use mesh::FourFaces;
 use strahl_accel::Beam;
-use strahl_math::{DVec3, Ray, det};
+use strahl_math::{DVec3, Ray};
 use strahl_scene::{Camera, Projection};
 use strahl_shade::Color;
 use strahl_shade::patterns::TexturePoint;
@@ -132,7 +133,7 @@ impl PrimaryRays {
                 let direction = c.direction.normalize();
                 (Ray::new(c.eye + sideways, direction), [0.5 * u, 0.5 * v])
             }
-            _ => self.wide_ray(u, v)?,
+            _ => wide::ray(c, [u, v])?,
         };
         Some(match &c.normal {
             None => ray,
@@ -170,148 +171,6 @@ impl PrimaryRays {
             self.ray(x0, y1)?,
         ])
     }
-
-    /// The ray of a camera that is neither perspective nor orthographic, at coordinates from -1 to 1, and the position at which
-    /// the camera's `normal` is evaluated: the two angles, where the projection has them (measured with POV-Ray 3.7, except for
-    /// panoramic cameras).
-    fn wide_ray(&self, u: f64, v: f64) -> Option<(Ray, [f64; 2])> {
-        let c = &self.camera;
-        let (right, up) = (c.right * 2.0, c.up * 2.0);
-        let (side, above, forward) = (
-            right.normalize_or_zero(),
-            up.normalize_or_zero(),
-            c.direction.normalize_or_zero(),
-        );
-        let (half_u, half_v) = (0.5 * u, 0.5 * v);
-        let mut eye = c.eye;
-        let (direction, place) = match c.projection {
-            Projection::Fisheye { angle } => {
-                let (a, b) = (u * right.length(), v * up.length());
-                let radius = (a * a + b * b).sqrt();
-                if radius > 1.0 {
-                    return None;
-                }
-                let theta = radius * angle * 0.5;
-                let direction = polar(theta, [a, b], [side, above, forward]);
-                (direction, [turn(a, b), theta])
-            }
-            Projection::Omnimax => {
-                let [a, b] = omnimax_film([u, v], right.length() / up.length());
-                let r = (a * a + b * b).sqrt();
-                if r > 1.0 {
-                    return None;
-                }
-                // The lens of Omnimax projectors: the angle as a function of the distance from the axis of the film (N. Max,
-                // "Computer graphics distortion for IMAX and OMNIMAX projection", Nicograph 1983).
-                let theta = r * (1.411_269 + r * r * (r * r * 0.256_74 - 0.094_39));
-                let direction = polar(theta, [a, b], [side, above, forward]);
-                if direction.dot(above) < -direction.dot(forward) {
-                    return None;
-                }
-                (direction, [turn(a, b), theta])
-            }
-            Projection::UltraWideAngle { angle } => {
-                let a = half_u * angle;
-                let b = half_v * angle * up.length() / right.length();
-                let ((sin_a, cos_a), (sin_b, cos_b)) = (det::sin_cos(a), det::sin_cos(b));
-                let flat = side * sin_a + above * sin_b;
-                (flat + forward * (cos_a * cos_b), [a, b])
-            }
-            Projection::Panoramic => {
-                let (a, b) = (half_u * std::f64::consts::PI, half_v * std::f64::consts::PI);
-                let ((sin_a, cos_a), (sin_b, cos_b)) = (det::sin_cos(a), det::sin_cos(b));
-                let level = right * sin_a + c.direction * cos_a;
-                // The place for `normal` is measured from the right (as in POV-Ray).
-                let place = [std::f64::consts::FRAC_PI_2 - a, b];
-                (level * cos_b + up * sin_b, place)
-            }
-            Projection::Cylinder {
-                upright,
-                moving,
-                angle,
-            } => {
-                let (axis, along, around, across) = if upright {
-                    (up, half_v, half_u * angle, side)
-                } else {
-                    (right, half_u, half_v * angle, above)
-                };
-                let (sin, cos) = det::sin_cos(around);
-                let straight = across * sin + forward * cos;
-                let distance = along * axis.length();
-                let place = if upright {
-                    [around, distance]
-                } else {
-                    [distance, around]
-                };
-                if moving {
-                    eye += axis * along;
-                    (straight, place)
-                } else {
-                    (straight + axis * along, place)
-                }
-            }
-            Projection::Spherical {
-                horizontal,
-                vertical,
-            } => {
-                // First a rotation about the axis to the right, then one about the vertical axis.
-                let (a, b) = (half_u * horizontal, half_v * vertical);
-                let tilted = turned(forward, side, -b);
-                (turned(tilted, above, a), [a, b])
-            }
-            Projection::Perspective | Projection::Orthographic | Projection::Mesh(_) => {
-                return None;
-            }
-        };
-        let length = direction.length();
-        (length > 0.0).then(|| (Ray::new(eye, direction / length), place))
-    }
-}
-
-/// The position on the film of an Omnimax projector for a position in a picture with this aspect ratio: the visible part of the
-/// dome reaches the top of the picture, and in wide pictures the bottom too (measured with POV-Ray 3.7).
-fn omnimax_film([u, v]: [f64; 2], aspect: f64) -> [f64; 2] {
-    /// Half the height of the film from the top of the dome down to 45 degrees below the horizon.
-    const HALF_HEIGHT: f64 = 0.779_14;
-    let tall = 1.0 / aspect;
-    let scale = if tall > HALF_HEIGHT {
-        tall
-    } else {
-        HALF_HEIGHT
-    };
-    let (wide, raised) = (scale * aspect, 1.0 - scale);
-    [
-        if wide > 1.0 { u * wide } else { u },
-        scale * v + if raised > 0.0 { raised } else { 0.0 },
-    ]
-}
-
-/// The direction at the angle `theta` from the third axis, on the side of the point `[a, b]` in the plane of the first two.
-fn polar(theta: f64, [a, b]: [f64; 2], [side, above, forward]: [DVec3; 3]) -> DVec3 {
-    let radius = (a * a + b * b).sqrt();
-    let (sin, cos) = det::sin_cos(theta);
-    let ahead = forward * cos;
-    if radius > 0.0 {
-        ahead + (side * a + above * b) * (sin / radius)
-    } else {
-        ahead
-    }
-}
-
-/// The polar angle of a point in the plane, from -90 to 270 degrees as POV-Ray counts it.
-fn turn(a: f64, b: f64) -> f64 {
-    let angle = det::atan2(b, a);
-    if angle < -std::f64::consts::FRAC_PI_2 {
-        angle + std::f64::consts::TAU
-    } else {
-        angle
-    }
-}
-
-/// A vector rotated by an angle about a unit axis (Rodrigues' formula).
-fn turned(v: DVec3, axis: DVec3, angle: f64) -> DVec3 {
-    let (sin, cos) = det::sin_cos(angle);
-    v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))
 }
 
 #[cfg(test)]
