@@ -3,7 +3,7 @@ use crate::observer::{
     BranchEnd, GatherTerm, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
 };
 use crate::render::{RenderError, RenderOptions, mean_of_corners, refined_quadrants};
-use crate::sampling::{Division, Quadrants, Sample, Sampling};
+use crate::sampling::{Division, Quadrants, Refinement, Sample, Sampling};
 use crate::scene::RenderScene;
 use crate::trace::TreeTracer;
 use strahl_scene::Camera;
@@ -153,12 +153,52 @@ pub(crate) fn explain_from(
     });
     crate::Film::try_new(options.width, options.height, region, false)?;
     let rays = PrimaryRays::new(camera, options.width, options.height);
-    let mut tracer = TreeTracer::new(scene, options.trace).with_transport(&options.transport);
-    let (mut samples, mut count, mut center_stands_for) = (Vec::new(), 0, 0);
-    let mut sample = |pass: u32, dx: f64, dy: f64| {
-        let place = (f64::from(x) + dx, f64::from(y) + dy);
+    let mut recorder = Recorder {
+        options,
+        rays: &rays,
+        tracer: TreeTracer::new(scene, options.trace).with_transport(&options.transport),
+        pixel: (x, y),
+        samples: vec![],
+        places: 0,
+    };
+    let color = match &options.sampling {
+        Sampling::Corners => mean_of_corners(recorder.corners()).color,
+        Sampling::Recursive(refinement) => recorder.divided(refinement),
+        _ => recorder.passes(refined_quadrants(scene, &rays, options, x, y)?),
+    };
+    let color = options.trace.space().decode(color);
+    Ok(PixelTree {
+        samples: recorder.samples,
+        places: recorder.places,
+        color,
+        film: color.to_f32(),
+    })
+}
+
+/// Traces the samples of a pixel and records their trees.
+struct Recorder<'s> {
+    options: &'s RenderOptions,
+    rays: &'s PrimaryRays,
+    tracer: TreeTracer<'s>,
+    pixel: (u32, u32),
+    samples: Vec<PixelSample>,
+    /// How many places have been looked at.
+    places: u32,
+}
+
+impl Recorder<'_> {
+    /// The colour of a place, given from the pixel's top left corner.
+    fn place(&mut self, pass: u32, (dx, dy): (f64, f64)) -> Color {
+        let Self {
+            options,
+            rays,
+            tracer,
+            samples,
+            ..
+        } = self;
+        let place = (f64::from(self.pixel.0) + dx, f64::from(self.pixel.1) + dy);
         let mut number = 0;
-        count += 1;
+        self.places += 1;
         rays.color(place.0, place.1, |ray| {
             let mut tree = RayTree::default();
             let color = tracer.trace(ray, &mut tree).color;
@@ -174,58 +214,53 @@ pub(crate) fn explain_from(
             number += 1;
             color
         })
-    };
-    let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
-    let color = match options.sampling {
-        Sampling::Corners | Sampling::Recursive(_) => {
-            let corners = corners.map(|(dx, dy)| Sample::from(sample(0, dx, dy)));
-            let pixel = match &options.sampling {
-                Sampling::Recursive(refinement) => {
-                    let mut division = Division::new(refinement, options.trace.space());
-                    division.add((0, 0), corners);
-                    let mut inner = |&(dx, dy): &(f64, f64)| Sample::from(sample(1, dx, dy));
-                    let means =
-                        division.means(|places| Some(places.iter().map(&mut inner).collect()));
-                    means.map_or(Sample::BLACK, |means| means[0])
-                }
-                _ => mean_of_corners(corners),
-            };
-            pixel.color
-        }
-        sampling => {
-            // Samples are summed pass by pass, as for the film: floating-point sums depend on the grouping.
-            let places = |pass| sampling.places(pass, x, y, options.seed);
-            let mut sum = Color::BLACK;
-            for (dx, dy) in places(0) {
-                sum += sample(0, dx, dy);
-            }
-            let mut all = places(0).len() as u32;
-            let quadrants = refined_quadrants(scene, &rays, options, x, y)?;
-            if !quadrants.is_none() {
-                let (mut more, mut traced) = (Color::BLACK, 0);
-                for quadrant in (0..Quadrants::COUNT).filter(|n| quadrants.has(*n)) {
-                    let mut part = Color::BLACK;
-                    for (dx, dy) in places(1).filter(|at| Quadrants::of(*at) == quadrant) {
-                        part += sample(1, dx, dy);
-                        traced += 1;
-                    }
-                    more += part;
-                }
-                center_stands_for = places(1).len() as u32 - traced;
-                sum = more + sum * f64::from(1 + center_stands_for);
-                all += places(1).len() as u32;
-            }
-            if all == 1 { sum } else { sum / f64::from(all) }
-        }
-    };
-    for sample in samples.iter_mut().filter(|sample| sample.pass == 0) {
-        sample.times += center_stands_for;
     }
-    let color = options.trace.space().decode(color);
-    Ok(PixelTree {
-        samples,
-        places: count,
-        color,
-        film: color.to_f32(),
-    })
+
+    /// What is seen through the corners of the pixel.
+    fn corners(&mut self) -> [Sample; 4] {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+        corners.map(|at| Sample::from(self.place(0, at)))
+    }
+
+    /// The colour of the pixel, divided where its corners differ.
+    fn divided(&mut self, refinement: &Refinement) -> Color {
+        let corners = self.corners();
+        let mut division = Division::new(refinement, self.options.trace.space());
+        division.add((0, 0), corners);
+        let mut inner = |at: &(f64, f64)| Sample::from(self.place(1, *at));
+        let means = division.means(|places| Some(places.iter().map(&mut inner).collect()));
+        means.map_or(Color::BLACK, |means| means[0].color)
+    }
+
+    /// The colour of the pixel from the places of its first pass, and those of the second in these quadrants. The first place stands for
+    /// those of the other quadrants.
+    // Samples are summed pass by pass, as for the film: floating-point sums depend on the grouping.
+    fn passes(&mut self, quadrants: Quadrants) -> Color {
+        let (options, (x, y)) = (self.options, self.pixel);
+        let places = |pass| options.sampling.places(pass, x, y, options.seed);
+        let mut sum = Color::BLACK;
+        for at in places(0) {
+            sum += self.place(0, at);
+        }
+        let mut all = places(0).len() as u32;
+        if !quadrants.is_none() {
+            let first = self.samples.len();
+            let (mut more, mut traced) = (Color::BLACK, 0);
+            for quadrant in (0..Quadrants::COUNT).filter(|n| quadrants.has(*n)) {
+                let mut part = Color::BLACK;
+                for at in places(1).filter(|at| Quadrants::of(*at) == quadrant) {
+                    part += self.place(1, at);
+                    traced += 1;
+                }
+                more += part;
+            }
+            let center_stands_for = places(1).len() as u32 - traced;
+            for sample in &mut self.samples[..first] {
+                sample.times += center_stands_for;
+            }
+            sum = more + sum * f64::from(1 + center_stands_for);
+            all += places(1).len() as u32;
+        }
+        if all == 1 { sum } else { sum / f64::from(all) }
+    }
 }
