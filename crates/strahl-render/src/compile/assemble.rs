@@ -140,91 +140,124 @@ fn order(
 
 /// Element numbers and bounds of a group whose instances refer to groups that are already assembled.
 fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnostic>> {
-    let FlatGroup {
-        prims,
-        shapes,
-        spheres,
-        meshes,
-        instances,
-    } = group;
-    let too_many = |kind: &str| {
-        vec![Diagnostic::error(format!(
-            "the scene has too many {kind}: more than 2^32"
-        ))]
-    };
-    if prims.len() >= u32::MAX as usize {
-        return Err(too_many("primitives"));
+    if group.prims.len() >= u32::MAX as usize {
+        return Err(too_many("primitives: more than 2^32"));
     }
-    let mut prim_bounds = Vec::with_capacity(prims.len());
-    let mut first_ids = Vec::new();
-    let mut simple = true;
-    let mut count = 0u64;
+    let mut prim_bounds = Vec::with_capacity(group.prims.len());
+    let mut numbers = Numbers::default();
     let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);
-    for (index, prim) in prims.iter().enumerate() {
-        let (elements, own) = match prim.kind() {
-            PrimKind::Triangle(mesh, triangle) => {
-                (1, meshes[mesh as usize].mesh.element_bounds(triangle))
-            }
-            PrimKind::Sphere(number) => (1, spheres.loose(number).bounds()),
-            PrimKind::Shape(shape) => {
-                let shape = &shapes[shape as usize].shape;
-                (u64::from(shape.elements()), shape.bounds())
-            }
-            PrimKind::Placed(shape) => {
-                let used = &shapes[shape as usize];
-                let bounds = used.shape.bounds();
-                let bounds = used
-                    .transform
-                    .as_ref()
-                    .map_or(bounds, |m| m.bounds_to_world(&bounds));
-                (u64::from(used.shape.elements()), bounds)
-            }
-            PrimKind::Instance(instance) => {
-                let instance = &instances[instance as usize];
-                let inner = &done[instance.group as usize];
-                let map = &instance.transform;
-                bounds = bounds.union(&map.bounds_to_world(&inner.bounds));
-                // An instance of an empty group has no elements and is never visited.
-                let own = if inner.reach.is_bounded() || inner.reach.is_empty() {
-                    map.bounds_to_world(&inner.reach)
-                } else {
-                    Aabb::EVERYTHING
-                };
-                (inner.count, own)
-            }
-        };
-        if elements != 1 && simple {
-            simple = false;
-            first_ids.extend(0..index as u64);
+    for prim in group.prims.iter() {
+        let extent = Extent::of(prim.kind(), &group, done);
+        numbers.push(extent.elements)?;
+        bounds = bounds.union(&extent.inner);
+        if extent.all.is_bounded() {
+            bounds = bounds.union(&extent.all);
         }
-        if !simple {
-            first_ids.push(count);
-        }
-        count = match count.checked_add(elements) {
-            Some(count) if count < u64::MAX / 2 => count,
-            _ => {
-                return Err(vec![Diagnostic::error(
-                    "the scene has too many instanced elements: more than 2^63",
-                )]);
-            }
-        };
-        if own.is_bounded() {
-            bounds = bounds.union(&own);
-        }
-        reach = reach.union(&own);
-        prim_bounds.push(own);
+        reach = reach.union(&extent.all);
+        prim_bounds.push(extent.all);
     }
-    let first_ids = (!simple).then(|| FirstIds::new(first_ids, count));
     Ok(Assembled {
-        prims: prims.completed(),
-        shapes,
-        spheres,
-        meshes,
-        instances,
-        first_ids,
-        count,
+        prims: group.prims.completed(),
+        shapes: group.shapes,
+        spheres: group.spheres,
+        meshes: group.meshes,
+        instances: group.instances,
+        count: numbers.count,
+        first_ids: numbers.first_ids(),
         bounds,
         reach,
         prim_bounds,
     })
+}
+
+/// The scene can't be numbered.
+fn too_many(what: &str) -> Vec<Diagnostic> {
+    vec![Diagnostic::error(format!("the scene has too many {what}"))]
+}
+
+/// How many elements a primitive has, and where they are.
+struct Extent {
+    elements: u64,
+    /// Bounds of an instance's bounded primitives; empty for others.
+    inner: Aabb,
+    /// Bounds of all of it.
+    all: Aabb,
+}
+
+impl Extent {
+    fn of(prim: PrimKind, group: &FlatGroup, done: &[Assembled]) -> Self {
+        let (elements, all) = match prim {
+            PrimKind::Triangle(mesh, triangle) => {
+                let mesh = &group.meshes[mesh as usize].mesh;
+                (1, mesh.element_bounds(triangle))
+            }
+            PrimKind::Sphere(number) => (1, group.spheres.loose(number).bounds()),
+            PrimKind::Shape(shape) => {
+                let shape = &group.shapes[shape as usize].shape;
+                (u64::from(shape.elements()), shape.bounds())
+            }
+            PrimKind::Placed(shape) => {
+                let used = &group.shapes[shape as usize];
+                let (elements, bounds) = (used.shape.elements(), used.shape.bounds());
+                let map = used.transform.as_ref();
+                let bounds = map.map_or(bounds, |map| map.bounds_to_world(&bounds));
+                (u64::from(elements), bounds)
+            }
+            PrimKind::Instance(instance) => {
+                let instance = &group.instances[instance as usize];
+                return Self::of_instance(instance, &done[instance.group as usize]);
+            }
+        };
+        Self {
+            elements,
+            inner: Aabb::EMPTY,
+            all,
+        }
+    }
+
+    fn of_instance(instance: &InstanceUse, group: &Assembled) -> Self {
+        let map = &instance.transform;
+        Self {
+            elements: group.count,
+            inner: map.bounds_to_world(&group.bounds),
+            // An instance of an empty group has no elements and is never visited.
+            all: if group.reach.is_bounded() || group.reach.is_empty() {
+                map.bounds_to_world(&group.reach)
+            } else {
+                Aabb::EVERYTHING
+            },
+        }
+    }
+}
+
+/// Numbers the elements of a group's primitives.
+#[derive(Default)]
+struct Numbers {
+    /// The number of primitives so far, and of their elements.
+    prims: u64,
+    count: u64,
+    /// The first number of each primitive, from when one has not exactly one element.
+    first: Option<Vec<u64>>,
+}
+
+impl Numbers {
+    /// The next primitive, with this many elements.
+    fn push(&mut self, elements: u64) -> Result<(), Vec<Diagnostic>> {
+        if elements != 1 && self.first.is_none() {
+            self.first = Some((0..self.prims).collect());
+        }
+        if let Some(first) = &mut self.first {
+            first.push(self.count);
+        }
+        self.prims += 1;
+        self.count = match self.count.checked_add(elements) {
+            Some(count) if count < u64::MAX / 2 => count,
+            _ => return Err(too_many("instanced elements: more than 2^63")),
+        };
+        Ok(())
+    }
+
+    fn first_ids(self) -> Option<FirstIds> {
+        self.first.map(|first| FirstIds::new(first, self.count))
+    }
 }
