@@ -41,17 +41,20 @@ impl Assembled {
 /// Deepest nesting of instances.
 const MOST_LEVELS: u32 = 64;
 
-/// Orders the groups so that each comes after those it instances (the world, last on entry, stays last), drops unused groups,
-/// and computes element numbers and bounds. The masks of lights refer to groups by number too; these are renumbered.
+/// Orders the groups so that each comes before those it instances, the world first, drops unused groups, and computes element
+/// numbers and bounds. The masks of lights refer to groups by number too; these are renumbered.
 pub(super) fn assemble(
     groups: Vec<FlatGroup>,
+    world: usize,
     scene: &Scene,
     masks: &mut [Option<InstanceUse>],
 ) -> Result<Vec<Assembled>, Vec<Diagnostic>> {
     let roots: Vec<usize> = masks.iter().flatten().map(|m| m.group as usize).collect();
-    let order = order(&groups, scene, &roots)?;
+    let order = order(&groups, world, scene, &roots)?;
     let mut place = vec![u32::MAX; groups.len()];
     let mut groups: Vec<Option<FlatGroup>> = groups.into_iter().map(Some).collect();
+    // A group needs the bounds of those it instances, so it is assembled after them; numbers are given from the last one down.
+    let last = order.len().saturating_sub(1);
     let mut done: Vec<Assembled> = Vec::with_capacity(order.len());
     for index in order {
         let Some(mut group) = groups[index].take() else {
@@ -60,9 +63,10 @@ pub(super) fn assemble(
         for instance in &mut group.instances {
             instance.group = place[instance.group as usize];
         }
-        place[index] = done.len() as u32;
-        done.push(number(group, &done)?);
+        place[index] = (last - done.len()) as u32;
+        done.push(number(group, |place| &done[last - place as usize])?);
     }
+    done.reverse();
     for mask in masks.iter_mut().flatten() {
         mask.group = place[mask.group as usize];
     }
@@ -72,6 +76,7 @@ pub(super) fn assemble(
 /// The groups that these roots need, then those that the world needs, each after those it instances.
 fn order(
     groups: &[FlatGroup],
+    world: usize,
     scene: &Scene,
     roots: &[usize],
 ) -> Result<Vec<usize>, Vec<Diagnostic>> {
@@ -81,9 +86,6 @@ fn order(
         Open,
         Done,
     }
-    let Some(world) = groups.len().checked_sub(1) else {
-        return Ok(vec![]);
-    };
     let mut states = vec![State::New; groups.len()];
     let mut levels = vec![0u32; groups.len()];
     let mut order = Vec::new();
@@ -139,7 +141,10 @@ fn order(
 }
 
 /// Element numbers and bounds of a group whose instances refer to groups that are already assembled.
-fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnostic>> {
+fn number<'d>(
+    group: FlatGroup,
+    done: impl Fn(u32) -> &'d Assembled,
+) -> Result<Assembled, Vec<Diagnostic>> {
     if group.prims.len() >= u32::MAX as usize {
         return Err(too_many("primitives: more than 2^32"));
     }
@@ -147,7 +152,7 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
     let mut numbers = Numbers::default();
     let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);
     for prim in group.prims.iter() {
-        let extent = Extent::of(prim.kind(), &group, done);
+        let extent = Extent::of(prim.kind(), &group, &done);
         numbers.push(extent.elements)?;
         bounds = bounds.union(&extent.inner);
         if extent.all.is_bounded() {
@@ -185,7 +190,7 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(prim: PrimKind, group: &FlatGroup, done: &[Assembled]) -> Self {
+    fn of<'d>(prim: PrimKind, group: &FlatGroup, done: impl Fn(u32) -> &'d Assembled) -> Self {
         let (elements, all) = match prim {
             PrimKind::Triangle(mesh, triangle) => {
                 let mesh = &group.meshes[mesh as usize].mesh;
@@ -205,7 +210,7 @@ impl Extent {
             }
             PrimKind::Instance(instance) => {
                 let instance = &group.instances[instance as usize];
-                return Self::of_instance(instance, &done[instance.group as usize]);
+                return Self::of_instance(instance, done(instance.group));
             }
         };
         Self {

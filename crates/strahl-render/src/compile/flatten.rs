@@ -61,10 +61,13 @@ impl FlatGroup {
     }
 }
 
-/// The scene as lists: the scene's groups in their order, the world last.
+/// The scene as lists.
 #[derive(Debug, Default)]
 pub(super) struct Flat {
+    /// The scene's groups by their numbers, the world, and spaces for small objects.
     pub(super) groups: Vec<FlatGroup>,
+    /// Index of the world.
+    pub(super) world: usize,
     pub(super) objects: Objects,
     pub(super) materials: MaterialTable,
     pub(super) texture_spaces: Vec<Transform>,
@@ -83,6 +86,7 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
     let mut pass = Pass {
         flat: Flat {
             materials: MaterialTable::new(scene.settings.quality),
+            world: scene.groups.len(),
             ..Flat::default()
         },
         errors: vec![],
@@ -94,7 +98,7 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
     for objects in scene.groups.iter().map(|g| &g.objects).chain(world) {
         let mut group = FlatGroup::default();
         let lights = pass.flat.lights.len();
-        pass.in_world = pass.flat.groups.len() == scene.groups.len();
+        pass.in_world = pass.flat.groups.len() == pass.flat.world;
         pass.objects(&objects.0, scene, &mut group);
         pass.flat.groups.push(group);
         if !pass.in_world

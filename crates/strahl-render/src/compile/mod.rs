@@ -48,6 +48,7 @@ pub struct CompileOptions {
 /// A scene after all passes but the last: everything except the acceleration structures.
 #[derive(Clone, Debug)]
 pub struct Prepared {
+    /// The world first, each before those it instances.
     groups: Vec<Assembled>,
     objects: Objects,
     materials: Vec<Arc<Material>>,
@@ -87,8 +88,8 @@ impl Prepared {
             true => masks(scene, &flat.lights)?,
             false => vec![],
         };
-        let groups = assemble::assemble(flat.groups, scene, &mut masks)?;
-        let bounds = groups.last().map_or(Aabb::EMPTY, |world| world.bounds);
+        let groups = assemble::assemble(flat.groups, flat.world, scene, &mut masks)?;
+        let bounds = groups.first().map_or(Aabb::EMPTY, |world| world.bounds);
         let mut warnings = flat.diagnostics;
         let camera = match &scene.camera {
             Some(camera) => match camera.problem() {
@@ -99,7 +100,7 @@ impl Prepared {
             },
             None => view::frame(bounds),
         };
-        if groups.last().is_none_or(|world| world.prims.is_empty()) {
+        if groups.first().is_none_or(|world| world.prims.is_empty()) {
             warnings.push(Diagnostic::warning(
                 "the scene has no objects: the picture shows the background only",
             ));
@@ -148,10 +149,7 @@ impl Prepared {
 
     /// Builds the acceleration structures.
     pub fn build(self, kind: AcceleratorKind) -> RenderScene {
-        // The world was assembled last, after all groups it refers to; the scene expects it first.
-        let last = self.groups.len().saturating_sub(1) as u32;
-        let renumber = |group: u32| last - group;
-        let groups = self.groups.into_iter().rev().map(|g| {
+        let groups = self.groups.into_iter().map(|g| {
             let accelerator = AnyAccelerator::build_from(kind, &GroupShapes(&g));
             let blocks = Blocks::new(&accelerator, &g.lists());
             accelerator.gather_pages();
@@ -159,10 +157,6 @@ impl Prepared {
             let [stopping, transmitting] =
                 [Prim::STOPS, Prim::TRANSMITS].map(|flag| part(kind, &g, flag));
             let uniform_flags = crate::blocks::uniform_flags(&g.lists());
-            let mut instances = g.instances;
-            for instance in &mut instances {
-                instance.group = renumber(instance.group);
-            }
             RenderGroup {
                 uniform_flags,
                 sheared: blocks.has_triangles() || !g.meshes.is_empty(),
@@ -172,7 +166,7 @@ impl Prepared {
                 prims: g.prims,
                 shapes: g.shapes,
                 meshes: g.meshes,
-                instances,
+                instances: g.instances,
                 first_ids: g.first_ids,
                 count: g.count,
                 bounds: g.bounds,
@@ -182,10 +176,6 @@ impl Prepared {
                 transmitting,
             }
         });
-        let mut masks = self.masks;
-        for mask in masks.iter_mut().flatten() {
-            mask.group = renumber(mask.group);
-        }
         let air = !self.fogs.is_empty() || !self.rainbows.is_empty();
         let shows = |m: &Arc<Material>| materials::material_shows(m);
         let transmits = self.materials.iter().any(|m| material_transmits(m));
@@ -200,7 +190,7 @@ impl Prepared {
             texture_spaces: self.texture_spaces.into(),
             lights: self.lights,
             light_sets: self.light_sets,
-            masks,
+            masks: self.masks,
             ambient: self.ambient,
             background: self.background,
             background_alpha: self.background_alpha,

@@ -57,18 +57,6 @@ pub(super) fn open_spaces(flat: &mut Flat) {
         flat.groups
             .extend(inner_groups.into_iter().map(|(inner, _)| inner));
     }
-    keep_world_last(flat, groups - 1);
-}
-
-/// Swaps the world with the last of the new groups, because it must be the last group.
-fn keep_world_last(flat: &mut Flat, world: usize) {
-    let last = flat.groups.len() - 1;
-    flat.groups.swap(world, last);
-    for instance in flat.groups.iter_mut().flat_map(|g| &mut g.instances) {
-        if instance.group as usize == last {
-            instance.group = world as u32;
-        }
-    }
 }
 
 /// The shapes that are small and far, in clusters. Triangles of meshes are relative to an anchor of their mesh already.
