@@ -120,43 +120,55 @@ impl Small {
                 return Ok(());
             }
         }
-        let first = End {
-            t: -enter.t,
-            leaf: enter.leaf,
-            facet: enter.facet,
-            next: -enter.next,
-            enters: true,
-        };
-        let last = End {
-            t: exit.t,
-            leaf: exit.leaf,
-            facet: exit.facet,
-            next: exit.next,
-            enters: false,
-        };
-        let alive = query.alive;
-        holes.retain(|(hole, _)| hole.exit.t >= alive.min && hole.enter.t <= alive.max);
-        if !holes.is_empty() {
-            return visit_around(leaves, query, [first, last], &holes, visit);
-        }
-        if query.close(first.t, last.t) {
-            return Err(TooClose);
-        }
-        for end in [first, last] {
-            if query.reaches(end.t) {
-                if query.is_double(&end) {
-                    return Err(TooClose);
-                }
-                if query
-                    .shows(&leaves[end.leaf as usize], end.t, end.facet, visit)
-                    .is_break()
-                {
-                    break;
-                }
+        visit_ends(leaves, query, [enter, exit], &mut holes, visit)
+    }
+}
+
+/// Visits the ends of a span, the first of which has its sign reversed, as far as the ray meets them, or what holes make of it.
+#[inline(always)]
+fn visit_ends(
+    leaves: &[Leaf],
+    query: &mut Query<'_>,
+    [enter, exit]: [Nearest; 2],
+    holes: &mut Holes,
+    visit: &mut impl FnMut(PrimHit) -> ControlFlow<()>,
+) -> Result<(), TooClose> {
+    let first = End {
+        t: -enter.t,
+        leaf: enter.leaf,
+        facet: enter.facet,
+        next: -enter.next,
+        enters: true,
+    };
+    let last = End {
+        t: exit.t,
+        leaf: exit.leaf,
+        facet: exit.facet,
+        next: exit.next,
+        enters: false,
+    };
+    let alive = query.alive;
+    holes.retain(|(hole, _)| hole.exit.t >= alive.min && hole.enter.t <= alive.max);
+    if !holes.is_empty() {
+        return visit_around(leaves, query, [first, last], holes, visit);
+    }
+    if query.close(first.t, last.t) {
+        return Err(TooClose);
+    }
+    for end in [first, last] {
+        if query.reaches(end.t) {
+            if query.is_double(&end) {
+                return Err(TooClose);
+            }
+            if query
+                .shows(&leaves[end.leaf as usize], end.t, end.facet, visit)
+                .is_break()
+            {
+                break;
             }
         }
-        Ok(())
     }
+    Ok(())
 }
 
 /// Visits the visible surfaces of the span between two ends that has holes.

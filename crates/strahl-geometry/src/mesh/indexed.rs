@@ -83,14 +83,10 @@ pub struct TriangleMesh {
     exchanged: Option<Box<[bool]>>,
 }
 
-impl TriangleMesh {
-    /// Checks the data and takes it over.
-    ///
-    /// # Errors
-    /// There is no triangle, or more than `u32` counts; an index is out of range; a value is not finite; a list
-    /// has the wrong length. The first offender is named, counted from 0.
-    pub fn try_new(data: MeshData) -> Result<Self, GeometryError> {
-        let (vertices, faces) = (data.positions.len() as u64, data.indices.len() as u64);
+impl MeshData {
+    /// Checks that the lists have the right lengths, and all numbers are finite.
+    fn check(&self) -> Result<(), GeometryError> {
+        let (vertices, faces) = (self.positions.len() as u64, self.indices.len() as u64);
         if faces == 0 {
             return Err(GeometryError::Degenerate {
                 what: "mesh",
@@ -104,7 +100,7 @@ impl TriangleMesh {
                 count: u64::from(u32::MAX),
             });
         }
-        if let Some(&bad) = data
+        if let Some(&bad) = self
             .indices
             .iter()
             .flatten()
@@ -124,35 +120,45 @@ impl TriangleMesh {
             }),
             _ => Ok(()),
         };
-        length("normals", data.normals.as_ref().map(Vec::len), vertices)?;
+        length("normals", self.normals.as_ref().map(Vec::len), vertices)?;
         length(
             "texture coordinates",
-            data.uvs.as_ref().map(Vec::len),
+            self.uvs.as_ref().map(Vec::len),
             vertices,
         )?;
         length(
             "face materials",
-            data.face_materials.as_ref().map(Vec::len),
+            self.face_materials.as_ref().map(Vec::len),
             faces,
         )?;
-        length("face lines", data.face_lines.as_ref().map(Vec::len), faces)?;
+        length("face lines", self.face_lines.as_ref().map(Vec::len), faces)?;
         length(
             "marks of faces that continue polygons",
-            data.face_continues.as_ref().map(Vec::len),
+            self.face_continues.as_ref().map(Vec::len),
             faces,
         )?;
-        if !data.anchor.is_finite() {
+        if !self.anchor.is_finite() {
             return Err(GeometryError::NotFinite {
                 what: "anchor of the mesh",
             });
         }
-        check_finite("vertex", &data.positions)?;
-        check_finite("normal of vertex", data.normals.as_deref().unwrap_or(&[]))?;
+        check_finite("vertex", &self.positions)?;
+        check_finite("normal of vertex", self.normals.as_deref().unwrap_or(&[]))?;
         check_finite(
             "texture coordinate of vertex",
-            data.uvs.as_deref().unwrap_or(&[]),
-        )?;
+            self.uvs.as_deref().unwrap_or(&[]),
+        )
+    }
+}
 
+impl TriangleMesh {
+    /// Checks the data and takes it over.
+    ///
+    /// # Errors
+    /// There is no triangle, or more than `u32` counts; an index is out of range; a value is not finite; a list
+    /// has the wrong length. The first offender is named, counted from 0.
+    pub fn try_new(data: MeshData) -> Result<Self, GeometryError> {
+        data.check()?;
         let unit = |n: [f32; 3]| {
             DVec3::from(n.map(f64::from))
                 .normalize_or_zero()

@@ -167,6 +167,13 @@ impl Window {
             let y = (f[0] * seen_a[1] - f[1] * seen_a[0]) / determinant;
             return Verdict::Certain([self.middle[0] + x * hu, self.middle[1] + y * hv]);
         }
+        self.clipped(point, [a, b], off, frame)
+    }
+
+    /// The part of the window in which the ray may meet the patch: near the plane through a point and along two derivatives, from which the
+    /// patch is at most `off` away.
+    #[inline(always)]
+    fn clipped(&self, point: DVec3, [a, b]: [DVec3; 2], off: f64, frame: &Frame) -> Verdict {
         let normal = a.cross(b);
         let (nn, aa, bb) = (
             normal.length_squared(),
