@@ -20,28 +20,15 @@ mod shape;
 mod spans;
 pub mod swept;
 
-pub use algebraic::{Blob, BlobComponent, Polynomial, Superellipsoid};
+pub use algebraic::*;
 pub use bounded::Bounded;
-pub use csg::{Csg, CsgNode, Operands, PacketRanges, PacketTree};
-pub use fractal::{
-    HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, Mandelbulb, Menger,
-    QuaternionFunction, Terrain, TerrainDetail, TerrainKind, TerrainOptions,
-};
-pub use implicit::{
-    Container, GridIsosurface, GridOptions, HeightField, Isosurface, IsosurfaceOptions, Parametric,
-    ParametricOptions,
-};
-pub use mesh::{
-    Brep, MeshData, PlaneHit, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh,
-};
-pub use patch::{
-    BicubicPatch, Nurbs, NurbsCurve, NurbsData, Subdivision, SubdivisionData, SubdivisionScheme,
-    TrimLoop,
-};
+pub use csg::*;
+pub use fractal::*;
+pub use implicit::*;
+pub use mesh::*;
+pub use patch::*;
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
-pub use primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
+pub use primitives::*;
 pub use shape::Shape;
 pub use spans::{Crossing, Crossings, Side};
-pub use swept::{
-    Glyph, Lathe, Outline, OutlineBuilder, Prism, PrismSweep, Sor, SphereSweep, Spline, SweepSpline,
-};
+pub use swept::*;

@@ -1,26 +1,17 @@
-use crate::algebraic::{Blob, Polynomial, Superellipsoid};
-use crate::fractal::{Julia, Mandelbulb, Menger, Terrain};
-use crate::implicit::{GridIsosurface, HeightField, Isosurface, Parametric};
-use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
-use crate::patch::{BicubicPatch, Nurbs, Subdivision};
-use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
-use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
-use crate::{
-    Bounded, Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
-};
+use crate::*;
 use std::sync::Arc;
 use strahl_math::{Aabb, DVec2, Interval, Ray, Transform};
 
 /// Makes the enum of all shapes from the table below: the variants, the dispatch without virtual calls, the conversions.
 macro_rules! shapes {
-    ($($(#[$doc:meta])* $variant:ident($type:ty),)+) => {
+    ($($(#[$doc:meta])* $variant:ident($($type:tt)+),)+) => {
         /// Any shape: what scenes store.
         ///
         /// It is itself a [`Primitive`] and delegates to the shape within.
         #[derive(Clone, Debug)]
         #[non_exhaustive]
         pub enum Shape {
-            $($(#[$doc])* $variant($type),)+
+            $($(#[$doc])* $variant($($type)+),)+
         }
 
         impl Primitive for Shape {
@@ -94,11 +85,31 @@ macro_rules! shapes {
             }
         }
 
-        $(impl From<$type> for Shape {
+        $(conversions!($variant $($type)+);)+
+    };
+}
+
+/// The conversions from a shape to its variant; those in an `Arc` are also put into it.
+macro_rules! conversions {
+    ($variant:ident Arc<$type:ident>) => {
+        impl From<$type> for Shape {
+            fn from(shape: $type) -> Self {
+                Self::$variant(Arc::new(shape))
+            }
+        }
+
+        impl From<Arc<$type>> for Shape {
+            fn from(shape: Arc<$type>) -> Self {
+                Self::$variant(shape)
+            }
+        }
+    };
+    ($variant:ident $type:ty) => {
+        impl From<$type> for Shape {
             fn from(shape: $type) -> Self {
                 Self::$variant(shape)
             }
-        })+
+        }
     };
 }
 
@@ -179,45 +190,6 @@ shapes! {
     /// A primitive from outside of this crate.
     Custom(Arc<dyn Primitive>),
 }
-
-/// Large shapes are put into their `Arc` automatically.
-macro_rules! shared {
-    ($($type:ident),+) => {
-        $(impl From<$type> for Shape {
-            fn from(shape: $type) -> Self {
-                Self::$type(Arc::new(shape))
-            }
-        })+
-    };
-}
-
-shared!(
-    Ovus,
-    Lemon,
-    Quadric,
-    Prism,
-    Lathe,
-    Sor,
-    SphereSweep,
-    SmoothTriangle,
-    TriangleMesh,
-    HeightField,
-    Isosurface,
-    GridIsosurface,
-    Parametric,
-    BicubicPatch,
-    Nurbs,
-    Subdivision,
-    Julia,
-    Mandelbulb,
-    Menger,
-    Terrain,
-    Polynomial,
-    Blob,
-    Csg,
-    Bounded,
-    Brep
-);
 
 #[cfg(test)]
 mod tests {
