@@ -1,10 +1,6 @@
 use crate::parameters::{self, NoParameters, Parameter, Parameters};
 use crate::shapes::all_bounds;
-use crate::{
-    Accelerator, Beam, Boxes, Bvh2, Bvh8, Bvh8Parameters, Grid, GridParameters, Grids, List,
-    Octree, OctreeParameters, Packet, PacketVisitor, Shapes, Spheres, SpheresParameters,
-    TraversalStats, Visitor,
-};
+use crate::*;
 use std::{fmt, str::FromStr};
 use strahl_math::{Aabb, Interval, Ray};
 use strahl_simd::Level;
