@@ -32,8 +32,18 @@ pub enum WordKind {
     Item,
 }
 
+/// Whether a line of the table ends in `new`.
+macro_rules! is_marked {
+    () => {
+        false
+    };
+    (new) => {
+        true
+    };
+}
+
 macro_rules! words {
-    ($($word:ident $text:literal $kind:ident,)*) => {
+    ($($word:ident $text:literal $kind:ident $($new:ident)?,)*) => {
         /// A reserved word.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u16)]
@@ -45,6 +55,9 @@ macro_rules! words {
             /// All words with spelling and kind, in the order of their numbers.
             pub const ALL: &'static [(Self, &'static str, WordKind)] =
                 &[$((Self::$word, $text, WordKind::$kind),)*];
+
+            /// Which words are marked as `new`, in the same order.
+            const NEW: &'static [bool] = &[$(is_marked!($($new)?),)*];
         }
     };
 }
@@ -61,31 +74,9 @@ impl Word {
         Self::ALL[self as usize].1
     }
 
-    /// Whether scenes may declare it as a name: the words that are new in version 3.8, measured with POV-Ray 3.7, and our own.
+    /// Whether scenes may declare it as a name.
     pub(crate) fn is_new(self) -> bool {
-        matches!(
-            self,
-            Self::Cmap
-                | Self::Dictionary
-                | Self::Global
-                | Self::Grey
-                | Self::Lemon
-                | Self::Mandelbulb
-                | Self::Menger
-                | Self::Mixed
-                | Self::Nurbs
-                | Self::Subdivision
-                | Self::Obj
-                | Self::Optional
-                | Self::Polarity
-                | Self::Potential
-                | Self::Prefix
-                | Self::Suffix
-                | Self::Tau
-                | Self::Terrain
-                | Self::Unofficial
-                | Self::UserDefined
-        )
+        Self::NEW[self as usize]
     }
 
     /// The kind.
@@ -94,6 +85,7 @@ impl Word {
     }
 }
 
+// A word marked as `new` may be declared as a name by scenes: those that are new in version 3.8, measured with POV-Ray 3.7, and our own.
 words! {
     AaLevel "aa_level" Item,
     AaThreshold "aa_threshold" Item,
@@ -176,7 +168,7 @@ words! {
     Clock "clock" Constant,
     ClockDelta "clock_delta" Constant,
     ClockOn "clock_on" Constant,
-    Cmap "cmap" Item,
+    Cmap "cmap" Item new,
     Collect "collect" Item,
     Color "color" Color,
     ColorMap "color_map" Thing,
@@ -217,7 +209,7 @@ words! {
     Dents "dents" Item,
     Deprecated "deprecated" Scope,
     Df3 "df3" Item,
-    Dictionary "dictionary" Thing,
+    Dictionary "dictionary" Thing new,
     Difference "difference" Object,
     Diffuse "diffuse" Item,
     DimensionSize "dimension_size" FloatFunction,
@@ -280,7 +272,7 @@ words! {
     Gamma "gamma" Item,
     Gather "gather" Item,
     Gif "gif" Item,
-    Global "global" Scope,
+    Global "global" Scope new,
     GlobalLights "global_lights" Item,
     GlobalSettings "global_settings" Statement,
     Gradient "gradient" Item,
@@ -288,7 +280,7 @@ words! {
     Gray "gray" Color,
     GrayThreshold "gray_threshold" Item,
     Green "green" Color,
-    Grey "grey" Color,
+    Grey "grey" Color new,
     GreyThreshold "grey_threshold" Item,
     Hdr "hdr" Item,
     HeightField "height_field" Object,
@@ -331,7 +323,7 @@ words! {
     JuliaFractal "julia_fractal" Object,
     Lambda "lambda" Item,
     Lathe "lathe" Object,
-    Lemon "lemon" Object,
+    Lemon "lemon" Object new,
     Leopard "leopard" Item,
     LightGroup "light_group" Statement,
     LightSource "light_source" Object,
@@ -349,7 +341,7 @@ words! {
     Magnet "magnet" Item,
     MajorRadius "major_radius" Item,
     Mandel "mandel" Item,
-    Mandelbulb "mandelbulb" Object,
+    Mandelbulb "mandelbulb" Object new,
     MapType "map_type" Item,
     Marble "marble" Item,
     Material "material" Thing,
@@ -367,7 +359,7 @@ words! {
     Media "media" Thing,
     MediaAttenuation "media_attenuation" Item,
     MediaInteraction "media_interaction" Item,
-    Menger "menger" Object,
+    Menger "menger" Object new,
     Merge "merge" Object,
     Mesh "mesh" Object,
     Mesh2 "mesh2" Object,
@@ -378,7 +370,7 @@ words! {
     Min "min" FloatFunction,
     MinExtent "min_extent" VectorFunction,
     MinimumReuse "minimum_reuse" Item,
-    Mixed "mixed" Item,
+    Mixed "mixed" Item new,
     MmPerUnit "mm_per_unit" Item,
     Mod "mod" FloatFunction,
     Mortar "mortar" Item,
@@ -399,8 +391,8 @@ words! {
     NumberOfSides "number_of_sides" Item,
     NumberOfTiles "number_of_tiles" Item,
     NumberOfWaves "number_of_waves" Item,
-    Nurbs "nurbs" Object,
-    Obj "obj" Item,
+    Nurbs "nurbs" Object new,
+    Obj "obj" Item new,
     Object "object" Object,
     Octaves "octaves" Item,
     Off "off" Constant,
@@ -411,7 +403,7 @@ words! {
     Once "once" Scope,
     Onion "onion" Item,
     Open "open" Item,
-    Optional "optional" Scope,
+    Optional "optional" Scope new,
     Orient "orient" Item,
     Orientation "orientation" Item,
     Orthographic "orthographic" Item,
@@ -436,18 +428,18 @@ words! {
     Plane "plane" Object,
     Png "png" Item,
     PointAt "point_at" Item,
-    Polarity "polarity" Item,
+    Polarity "polarity" Item new,
     Poly "poly" Object,
     PolyWave "poly_wave" Item,
     Polygon "polygon" Object,
     Polynomial "polynomial" Object,
     Pot "pot" Item,
-    Potential "potential" Item,
+    Potential "potential" Item new,
     Pow "pow" FloatFunction,
     Ppm "ppm" Item,
     Precision "precision" Item,
     Precompute "precompute" Item,
-    Prefix "prefix" Item,
+    Prefix "prefix" Item new,
     Premultiplied "premultiplied" Item,
     PretraceEnd "pretrace_end" Item,
     PretraceStart "pretrace_start" Item,
@@ -543,10 +535,10 @@ words! {
     Strlwr "strlwr" StringFunction,
     Strupr "strupr" StringFunction,
     Sturm "sturm" Item,
-    Subdivision "subdivision" Object,
+    Subdivision "subdivision" Object new,
     Substr "substr" StringFunction,
     Subsurface "subsurface" Item,
-    Suffix "suffix" Item,
+    Suffix "suffix" Item new,
     Sum "sum" FloatFunction,
     Superellipsoid "superellipsoid" Object,
     Switch "switch" Directive,
@@ -555,8 +547,8 @@ words! {
     Tan "tan" FloatFunction,
     Tanh "tanh" FloatFunction,
     Target "target" Item,
-    Tau "tau" Constant,
-    Terrain "terrain" Object,
+    Tau "tau" Constant new,
+    Terrain "terrain" Object new,
     Text "text" Object,
     Texture "texture" Thing,
     TextureList "texture_list" Item,
@@ -593,13 +585,13 @@ words! {
     UltraWideAngle "ultra_wide_angle" Item,
     Undef "undef" Directive,
     Union "union" Object,
-    Unofficial "unofficial" Item,
+    Unofficial "unofficial" Item new,
     Up "up" Item,
     UseAlpha "use_alpha" Item,
     UseColor "use_color" Item,
     UseColour "use_colour" Item,
     UseIndex "use_index" Item,
-    UserDefined "user_defined" Item,
+    UserDefined "user_defined" Item new,
     Utf8 "utf8" Item,
     UvIndices "uv_indices" Item,
     UvMapping "uv_mapping" Item,
