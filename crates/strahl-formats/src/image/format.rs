@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{ImageError, Picture, WriteOptions, bmp, exr, hdr, jpeg, png, ppm, tga};
+use super::*;
 
 /// A format pictures are written in; the order is that of [`formats`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -52,10 +52,11 @@ pub struct FormatInfo {
 const I32_MAX: u32 = i32::MAX as u32;
 const U16_MAX: u32 = u16::MAX as u32;
 
+// The table of picture formats: a new one is one line here and one in the enum.
 #[rustfmt::skip]
-const FORMATS: [FormatInfo; 7] = {
-    use ImageFormat::{Bmp, Exr, Hdr, Jpeg, Png, Ppm, Tga};
-    [
+const FORMATS: &[FormatInfo] = {
+    use ImageFormat::*;
+    &[
         FormatInfo { format: Png, extensions: &["png"], name: "PNG", description: "8 or 16 bit sRGB, lossless", layers: false, alpha: true, regions: true, max_side: I32_MAX, encode: png::encode },
         FormatInfo { format: Exr, extensions: &["exr"], name: "OpenEXR", description: "16 or 32 bit linear floats, layers, lossless", layers: true, alpha: true, regions: true, max_side: I32_MAX, encode: exr::encode },
         FormatInfo { format: Hdr, extensions: &["hdr", "pic"], name: "Radiance HDR", description: "linear, 8 bit with a common exponent", layers: false, alpha: false, regions: false, max_side: I32_MAX, encode: hdr::encode },
@@ -68,7 +69,7 @@ const FORMATS: [FormatInfo; 7] = {
 
 /// The formats pictures are written in, the usual one first.
 pub fn formats() -> &'static [FormatInfo] {
-    &FORMATS
+    FORMATS
 }
 
 impl ImageFormat {

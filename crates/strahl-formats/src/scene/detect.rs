@@ -1,7 +1,7 @@
-use crate::input::Fallible;
+use crate::input::{Fallible, Input, Report};
 use std::path::Path;
 use std::{fmt, str::FromStr};
-use strahl_scene::Diagnostic;
+use strahl_scene::{Diagnostic, Scene};
 
 /// A format scenes can be read from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,16 +32,19 @@ pub struct FormatInfo {
     pub description: &'static str,
     /// Whether a file that begins like this certainly has this format.
     looks_like: fn(&[u8]) -> bool,
+    /// Reads a file.
+    pub(super) read: fn(&Input<'_>, &mut Report) -> Scene,
 }
 
-// The table of scene formats: a new one is one line here, one in the enum and one in `read`.
-const FORMATS: [FormatInfo; 5] = [
+// The table of scene formats: a new one is an entry here and a line in the enum.
+const FORMATS: &[FormatInfo] = &[
     FormatInfo {
         format: SceneFormat::Nff,
         name: "nff",
         extensions: &["nff"],
         description: "Neutral File Format of the Standard Procedural Databases",
         looks_like: looks_like_nff,
+        read: super::nff::read,
     },
     FormatInfo {
         format: SceneFormat::Obj,
@@ -49,6 +52,7 @@ const FORMATS: [FormatInfo; 5] = [
         extensions: &["obj"],
         description: "Wavefront OBJ with MTL materials",
         looks_like: looks_like_obj,
+        read: crate::mesh::obj::read,
     },
     FormatInfo {
         format: SceneFormat::Ply,
@@ -56,6 +60,7 @@ const FORMATS: [FormatInfo; 5] = [
         extensions: &["ply"],
         description: "Stanford PLY meshes, ASCII and binary",
         looks_like: |start| start.starts_with(b"ply\n") || start.starts_with(b"ply\r"),
+        read: crate::mesh::ply::read,
     },
     FormatInfo {
         format: SceneFormat::Stl,
@@ -63,6 +68,7 @@ const FORMATS: [FormatInfo; 5] = [
         extensions: &["stl"],
         description: "STL triangles, ASCII and binary",
         looks_like: |start| start.starts_with(b"solid ") || start.starts_with(b"solid\n"),
+        read: crate::mesh::stl::read,
     },
     FormatInfo {
         format: SceneFormat::Gltf,
@@ -72,17 +78,18 @@ const FORMATS: [FormatInfo; 5] = [
         looks_like: |start| {
             start.starts_with(b"glTF") || start.trim_ascii_start().starts_with(b"{")
         },
+        read: super::gltf::read,
     },
 ];
 
 /// The table of scene formats.
 pub fn formats() -> &'static [FormatInfo] {
-    &FORMATS
+    FORMATS
 }
 
 impl SceneFormat {
     /// The format's line in the table.
-    fn info(self) -> Option<&'static FormatInfo> {
+    pub(super) fn info(self) -> Option<&'static FormatInfo> {
         FORMATS.iter().find(|info| info.format == self)
     }
 
@@ -125,7 +132,11 @@ pub struct UnknownSceneFormat {
 }
 
 fn names() -> String {
-    FORMATS.map(|info| info.name).join(", ")
+    FORMATS
+        .iter()
+        .map(|info| info.name)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 impl FromStr for SceneFormat {

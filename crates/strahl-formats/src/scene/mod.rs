@@ -17,7 +17,6 @@ mod nff;
 
 pub use crate::input::bytes::read_decompressed;
 use crate::input::{Folder, Input, Report, bytes};
-use crate::mesh::{obj, ply, stl};
 pub use detect::{FormatInfo, SceneFormat, UnknownSceneFormat, formats};
 use std::borrow::Cow;
 use std::path::Path;
@@ -89,16 +88,10 @@ fn read(bytes: &[u8], name: &str, format: SceneFormat, folder: Option<&Path>) ->
         name,
         folder: folder.as_ref(),
     };
-    let scene = match format {
-        SceneFormat::Nff => nff::read(&input, &mut report),
-        SceneFormat::Ply => ply::read(&input, &mut report),
-        SceneFormat::Stl => stl::read(&input, &mut report),
-        SceneFormat::Obj => obj::read(&input, &mut report),
-        SceneFormat::Gltf => gltf::read(&input, &mut report),
-    };
+    let scene = format.info().map(|info| (info.read)(&input, &mut report));
     let (failed, diagnostics) = report.finish();
     Loaded {
-        scene: (!failed).then_some(scene),
+        scene: scene.filter(|_| !failed),
         diagnostics,
         files: folder.map(Folder::into_read).unwrap_or_default(),
     }
