@@ -68,20 +68,20 @@ fn main() -> ExitCode {
         Command::Render(args) => {
             let reporter = Reporter::new(args.quiet);
             reporter.notes(&translated.notes);
-            commands::render(args, reporter)
+            commands::render::run(args, reporter)
         }
         Command::Submit(command) => submit::submit(command, &translated.words, &translated.notes),
-        Command::Merge(args) => commands::merge(args),
-        Command::View(args) => commands::view(args),
-        Command::Explain(args) => commands::explain(args),
-        Command::Compare(args) => commands::compare(args),
-        Command::Heatmap(args) => commands::heatmap(args),
-        Command::TraceRay(args) => commands::trace_ray(args),
-        Command::Info(args) => commands::info(args),
-        Command::Check(args) => commands::check(args),
-        Command::Formats => commands::formats(),
-        Command::Completions { shell } => commands::completions(*shell),
-        Command::Man { command } => commands::man(command.as_deref()),
+        Command::Merge(args) => commands::merge::run(args),
+        Command::View(args) => commands::view::run(args),
+        Command::Explain(args) => commands::explain::run(args),
+        Command::Compare(args) => commands::compare::run(args),
+        Command::Heatmap(args) => commands::heatmap::run(args),
+        Command::TraceRay(args) => commands::trace_ray::run(args),
+        Command::Info(args) => commands::info::run(args),
+        Command::Check(args) => commands::check::run(args),
+        Command::Formats => commands::formats::run(),
+        Command::Completions { shell } => commands::completions::run(*shell),
+        Command::Man { command } => commands::man::run(command.as_deref()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -6,11 +6,9 @@ mod render;
 mod scene;
 pub(crate) mod submit;
 
-pub(crate) use questions::{
-    CheckArgs, CompareArgs, ExplainArgs, ExplainForm, HeatmapArgs, Metric, TraceRayArgs, ViewArgs,
-};
-pub(crate) use render::{MergeArgs, RenderArgs};
-pub(crate) use scene::{AcceleratorArgs, AnimationArgs, PictureArgs, PovArgs, SceneArgs};
+pub(crate) use questions::*;
+pub(crate) use render::*;
+pub(crate) use scene::*;
 
 use crate::later::Later;
 use crate::memory::MemoryLimit;

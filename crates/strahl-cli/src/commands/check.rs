@@ -8,7 +8,7 @@ use strahl::scene::{Diagnostic, Severity, SourceMap};
 use strahl::tracing::Prepared;
 
 /// `strahl check`: prints all diagnostics of scenes, and whether the scenes could be rendered.
-pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &CheckArgs) -> Result<(), Failure> {
     let reporter = Reporter::new(false);
     let mut checked = vec![];
     let mut failed = false;

@@ -35,7 +35,7 @@ struct Row {
 }
 
 /// `strahl compare`: measures the cost of every accelerator and checks that the pictures are the same.
-pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let input = input.at_quality(args.picture.quality);
     let (prepared, _) = input.prepared(input.still(), &reporter)?;

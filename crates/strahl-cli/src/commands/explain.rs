@@ -10,7 +10,7 @@ use strahl::scene::FileId;
 use strahl_view::{PicturePage, Text};
 
 /// `strahl explain`: prints the ray tree of a pixel.
-pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let (scene_file, format) = (Some(args.scene.as_path()), args.scene_format);
     let input = Input::new(scene_file, format, &args.pov, args.picture.size)?
         .at_quality(args.picture.quality);

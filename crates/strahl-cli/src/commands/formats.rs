@@ -4,7 +4,7 @@ use strahl::Format;
 use strahl::accel::AcceleratorKind;
 
 /// `strahl formats`: lists formats and accelerators.
-pub(crate) fn formats() -> Result<(), Failure> {
+pub(crate) fn run() -> Result<(), Failure> {
     say!("Scenes (each may be compressed with gzip):");
     let files = strahl::formats::scene::formats().iter();
     let files = files.map(|f| (f.name, f.extensions, f.description));

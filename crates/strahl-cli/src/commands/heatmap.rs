@@ -9,7 +9,7 @@ use strahl::formats::image::{ImageFormat, Layer, LayerData, Picture, WriteOption
 use strahl::tracing::{PixelCost, Progress, RenderError, RenderScene, Sampling};
 
 /// `strahl heatmap`: draws the cost of each pixel.
-pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &HeatmapArgs) -> Result<(), Failure> {
     let format = ImageFormat::from_path(&args.output).map_err(Failure::new)?;
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let input = input.at_quality(args.picture.quality);

@@ -10,7 +10,7 @@ use strahl::shade::LightKind;
 use strahl::tracing::{Prepared, RenderScene};
 
 /// `strahl info`: prints the contents of a scene.
-pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &SceneArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(args)?, Reporter::new(false));
     let description = input.load(input.still(), &reporter)?;
     let prepared = match Prepared::new(&description) {

@@ -4,7 +4,7 @@ use crate::report::Failure;
 use clap::CommandFactory;
 
 /// `strahl man`: prints the manual page of the program or of a command.
-pub(crate) fn man(command: Option<&str>) -> Result<(), Failure> {
+pub(crate) fn run(command: Option<&str>) -> Result<(), Failure> {
     let mut all = Cli::command();
     all.build();
     let page = match command {

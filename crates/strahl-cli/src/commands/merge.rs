@@ -25,7 +25,7 @@ struct Image<'a> {
 }
 
 /// `strahl merge`: puts the tiles of a picture together.
-pub(crate) fn merge(args: &MergeArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &MergeArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let reporter = Reporter::new(args.quiet);
     let target = Target::named(&args.output, args.picture_format)?;

@@ -1,25 +1,14 @@
-mod check;
-mod compare;
-mod completions;
-mod explain;
-mod formats;
-mod heatmap;
-mod info;
-mod man;
-mod merge;
-mod render;
-mod trace_ray;
-mod view;
+//! The commands, one file each.
 
-pub(crate) use check::check;
-pub(crate) use compare::compare;
-pub(crate) use completions::completions;
-pub(crate) use explain::explain;
-pub(crate) use formats::formats;
-pub(crate) use heatmap::heatmap;
-pub(crate) use info::info;
-pub(crate) use man::man;
-pub(crate) use merge::merge;
-pub(crate) use render::{render, render_with};
-pub(crate) use trace_ray::trace_ray;
-pub(crate) use view::view;
+pub(crate) mod check;
+pub(crate) mod compare;
+pub(crate) mod completions;
+pub(crate) mod explain;
+pub(crate) mod formats;
+pub(crate) mod heatmap;
+pub(crate) mod info;
+pub(crate) mod man;
+pub(crate) mod merge;
+pub(crate) mod render;
+pub(crate) mod trace_ray;
+pub(crate) mod view;

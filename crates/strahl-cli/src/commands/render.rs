@@ -15,7 +15,7 @@ use strahl::tracing::{Film, RenderError, RenderOptions, RenderScene, Rendered, T
 use strahl_farm::TileInfo;
 
 /// `strahl render`: renders a scene to a picture, or to the pictures of an animation.
-pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failure> {
+pub(crate) fn run(args: &RenderArgs, reporter: Reporter) -> Result<(), Failure> {
     render_with(args, reporter, &Kept::default())
 }
 

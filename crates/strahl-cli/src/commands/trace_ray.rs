@@ -8,7 +8,7 @@ use strahl::math::{Aabb, DVec3};
 use strahl::tracing::{PrimaryRays, RayWalk, RenderScene, WalkEvent, walk};
 
 /// `strahl trace-ray`: prints the path of a ray through an accelerator.
-pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &TraceRayArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &reporter)?;
     let (width, height) = args.size.or(scene.settings().size).unwrap_or(DEFAULT_SIZE);

@@ -10,7 +10,7 @@ use strahl::prelude::*;
 use strahl_view::{Defaults, Request, ViewOptions, serve};
 
 /// `strahl view`: serves a page that shows a scene.
-pub(crate) fn view(args: &ViewArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
     let reporter = Reporter::new(false);
     if let Some(scene) = &args.scene
         && !scene.is_file()

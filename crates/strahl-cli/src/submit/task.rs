@@ -143,7 +143,7 @@ fn render(
     };
     note(&state, &file);
     let beat = beat(state.clone(), file.clone());
-    let rendered = commands::render_with(args, Reporter::new(true), kept);
+    let rendered = commands::render::render_with(args, Reporter::new(true), kept);
     drop(beat.0);
     // The thread returns nothing.
     let _ = beat.1.join();
