@@ -216,7 +216,7 @@ fuzz_target!(|data: &[u8]| {
         if rendered {
             let mut options = RenderOptions::new(&scene, 8, 8);
             (options.threads, options.trace.max_depth) = (1, 5);
-            let picture = strahl::render(&scene, &options, &()).expect("a small picture");
+            let picture = strahl::render(&scene, &options).expect("a small picture");
             let found = (picture.film, picture.rays.total());
             let expected = film.get_or_insert_with(|| found.clone());
             assert!(&found == expected, "{kind}: another picture");

@@ -75,7 +75,9 @@ pub use observer::{
 pub use profile::{Part as ProfilePart, Profile, ProfileReport};
 pub use queries::{HitInfo, HitSurface};
 pub use query::{Intersector, WalkEvent};
-pub use render::{PixelState, Progress, RenderError, RenderOptions, Rendered, render};
+pub use render::{
+    PixelState, Progress, RenderError, RenderOptions, Rendered, render, render_watched,
+};
 pub use sampling::{Refinement, Sampling, UnknownSampling};
 pub use scene::{RenderScene, SceneStats};
 pub use searcher::Searcher;

@@ -157,8 +157,16 @@ pub struct Rendered {
 /// pictures, or look at one on the way, have a [`Session`](crate::Session).
 ///
 /// # Errors
+/// [`RenderError`]: no such picture, no memory, or no threads.
+pub fn render(scene: &RenderScene, options: &RenderOptions) -> Result<Rendered, RenderError> {
+    render_watched(scene, options, &())
+}
+
+/// [Renders](render()) a picture, and tells how far it is.
+///
+/// # Errors
 /// [`RenderError`]: no such picture, no memory, no threads, or cancelled.
-pub fn render(
+pub fn render_watched(
     scene: &RenderScene,
     options: &RenderOptions,
     progress: &dyn Progress,

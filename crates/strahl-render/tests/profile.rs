@@ -9,6 +9,7 @@ use strahl_geometry::{Plane, Sphere, Torus};
 use strahl_math::DVec3;
 use strahl_render::{
     Activities, Profile, ProfilePart, ProfileReport, Progress, RenderOptions, RenderScene, render,
+    render_watched,
 };
 use strahl_scene::{Camera, ObjectExt, Scene};
 use strahl_shade::{Color, Light, Material};
@@ -56,7 +57,7 @@ fn profile(scene: &RenderScene, options: &RenderOptions) -> (String, ProfileRepo
     let hash = std::thread::scope(|threads| {
         let rendering = threads.spawn(|| {
             loop {
-                let rendered = render(scene, options, &sampled).expect("a picture");
+                let rendered = render_watched(scene, options, &sampled).expect("a picture");
                 if enough.load(Ordering::Acquire) {
                     return rendered.film.sha256();
                 }
@@ -86,7 +87,7 @@ fn a_profile_names_what_takes_the_time_and_changes_no_pixel() {
         ..RenderOptions::new(&scene, 120, 90)
     };
     let (hash, report) = profile(&scene, &options);
-    let without = render(&scene, &options, &()).expect("a picture");
+    let without = render(&scene, &options).expect("a picture");
     assert_eq!(hash, without.film.sha256());
     // Each sample has one phase and one ray; whatever else it has is a part of them.
     assert!(report.samples > 0);

@@ -16,7 +16,7 @@ fn film(text: &str, region: Option<Region>, sampling: &str, alpha: bool) -> Film
     options.sampling = sampling.parse::<Sampling>().expect("a sampling");
     options.alpha = alpha;
     options.region = region;
-    render(&scene, &options, &()).expect("a picture").film
+    render(&scene, &options).expect("a picture").film
 }
 
 /// One pixel of a picture of 160x120, as PNG files hold it: 8-bit codes, not multiplied by alpha, and alpha.

@@ -79,9 +79,7 @@ fn means(sheet: &Sheet, (w, h): (usize, usize)) -> Vec<[f64; 3]> {
     let scene = compile(&scene, &CompileOptions::default()).expect("the plates compile");
     let across = w * sheet.columns;
     let options = RenderOptions::new(&scene, across as u32, (h * sheet.rows) as u32);
-    let film = render(&scene, &options, &())
-        .expect("the plates render")
-        .film;
+    let film = render(&scene, &options).expect("the plates render").film;
     let plate = |i: usize| {
         let corner = (i / sheet.columns) * h * across + (i % sheet.columns) * w;
         let mut sum = [0.0; 3];
@@ -197,7 +195,7 @@ fn clouds_woods_and_stones_are_where_povrays_are() {
         let parsed = parse_with(&mut MemoryHost::new(), &text);
         let scene = parsed.scene.expect("the scene is read");
         let scene = compile(&scene, &CompileOptions::default()).expect("the scene compiles");
-        let film = render(&scene, &RenderOptions::new(&scene, 8, 6), &())
+        let film = render(&scene, &RenderOptions::new(&scene, 8, 6))
             .expect("the scene renders")
             .film;
         for (pixel, theirs) in film.pixels.iter().zip(theirs) {

@@ -297,7 +297,7 @@ fn crand_takes_the_whole_colour_of_each_layer() {
         let parsed = parse_with(&mut MemoryHost::new(), &text);
         let scene = parsed.scene.expect("the scene is read");
         let scene = compile(&scene, &CompileOptions::default()).expect("the scene compiles");
-        let film = render(&scene, &RenderOptions::new(&scene, 64, 64), &())
+        let film = render(&scene, &RenderOptions::new(&scene, 64, 64))
             .expect("the scene renders")
             .film;
         let sum: f64 = film.pixels.iter().map(|pixel| f64::from(pixel[0])).sum();

@@ -20,7 +20,7 @@ fn shown(text: &str, level: u8) -> [f64; 3] {
     let scene = compile(&scene, &CompileOptions::default()).expect("a valid scene");
     let mut options = RenderOptions::new(&scene, 1, 1);
     options.threads = 1;
-    let film = render(&scene, &options, &()).expect("a picture").film;
+    let film = render(&scene, &options).expect("a picture").film;
     let tree = explain(&scene, &options, 0, 0).expect("a pixel");
     let told = tree.samples[0].color.to_array();
     let pixel = film.pixels[0].map(f64::from);

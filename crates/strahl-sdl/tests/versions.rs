@@ -45,7 +45,7 @@ fn shown(parsed: &Parsed, alpha: bool) -> Vec<Vec<u8>> {
     options.sampling = Sampling::Center;
     options.threads = 1;
     options.alpha = alpha;
-    let film = render(&scene, &options, &()).expect("a picture").film;
+    let film = render(&scene, &options).expect("a picture").film;
     let code = |c: f32| srgb::encode_u8(c.clamp(0.0, 1.0));
     let colors = film.pixels.iter().enumerate();
     colors

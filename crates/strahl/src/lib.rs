@@ -88,7 +88,7 @@ pub use strahl_geometry as geometry;
 pub use strahl_math as math;
 pub use strahl_render::{
     self as tracing, Explanation, HitInfo, Outcome, Output, Session, Sink, Threads, Tile,
-    Unfinished, View, compile, explain, render,
+    Unfinished, View, compile, explain, render, render_watched,
 };
 pub use strahl_scene::{self as scene, Problems};
 pub use strahl_sdl as sdl;

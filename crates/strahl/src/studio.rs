@@ -193,7 +193,7 @@ mod tests {
         let scene = strahl_render::compile(scene, &strahl_render::CompileOptions::default())
             .expect("a valid scene");
         let options = strahl_render::RenderOptions::new(&scene, 40, 30);
-        let film = strahl_render::render(&scene, &options, &()).expect("a picture");
+        let film = strahl_render::render(&scene, &options).expect("a picture");
         film.film.pixels
     }
 

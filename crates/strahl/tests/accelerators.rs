@@ -86,7 +86,7 @@ fn compare(path: &Path) {
                     ..RenderOptions::new(&scene, width, height)
                 };
                 options.trace.packets = packets;
-                let done = strahl::render(&scene, &options, &()).expect("a picture");
+                let done = strahl::render(&scene, &options).expect("a picture");
                 let got = (done.film.sha256(), done.rays);
                 let expected = first.get_or_insert_with(|| got.clone());
                 assert_eq!(

@@ -19,9 +19,7 @@ fn pixels(version: &str, rest: &str) -> [([f32; 3], f32); 2] {
         strahl::compile(&scene, &strahl::tracing::CompileOptions::default()).expect("valid");
     let mut options = strahl::tracing::RenderOptions::new(&scene, 9, 3);
     options.alpha = true;
-    let film = strahl::render(&scene, &options, &())
-        .expect("a picture")
-        .film;
+    let film = strahl::render(&scene, &options).expect("a picture").film;
     let alpha = film.alpha.as_ref().expect("asked for");
     [9, 13].map(|at| (film.pixels[at], alpha[at]))
 }

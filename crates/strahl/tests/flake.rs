@@ -31,7 +31,7 @@ fn read(text: &str) -> Scene {
 fn picture(scene: &Scene) -> Vec<u8> {
     let scene = strahl::compile(scene, &CompileOptions::default()).expect("valid");
     let options = RenderOptions::new(&scene, 128, 96);
-    let film = strahl::render(&scene, &options, &()).expect("a picture");
+    let film = strahl::render(&scene, &options).expect("a picture");
     let values = film.film.pixels.iter().flatten();
     values
         .map(|v| (srgb::encode(f64::from(*v).clamp(0.0, 1.0)) * 255.0).round() as u8)

@@ -118,7 +118,7 @@ fn ours(scene: &Path) -> Result<Codes, String> {
     let scene = strahl::compile(&scene, &CompileOptions::default())
         .map_err(|problems| format!("{problems:?}"))?;
     let options = strahl::tracing::RenderOptions::new(&scene, SIZE.0, SIZE.1);
-    let film = strahl::render(&scene, &options, &()).map_err(|e| e.to_string())?;
+    let film = strahl::render(&scene, &options).map_err(|e| e.to_string())?;
     let values = film.film.pixels.iter().flatten();
     Ok(values
         .map(|v| (srgb::encode(f64::from(*v).clamp(0.0, 1.0)) * 255.0).round())

@@ -119,8 +119,7 @@ impl<'a> Comparison<'a> {
             for contender in &mut contenders {
                 let options = self.options(&contender.scene);
                 let start = Instant::now();
-                let rendered =
-                    strahl::render(&contender.scene, &options, &()).map_err(Failure::new)?;
+                let rendered = strahl::render(&contender.scene, &options).map_err(Failure::new)?;
                 contender.times.push(start.elapsed().as_secs_f64());
                 contender.rendered = Some(rendered);
             }
@@ -168,7 +167,7 @@ impl<'a> Comparison<'a> {
         let part = MOST_TESTS / (primitives * rays).max(1.0);
         let Some(reference) = reference.filter(|_| part < 1.0) else {
             let start = Instant::now();
-            list.rendered = Some(strahl::render(&list.scene, &options, &()).map_err(Failure::new)?);
+            list.rendered = Some(strahl::render(&list.scene, &options).map_err(Failure::new)?);
             list.times.push(start.elapsed().as_secs_f64());
             return list
                 .row()
@@ -183,7 +182,7 @@ impl<'a> Comparison<'a> {
                 ..options.clone()
             };
             let start = Instant::now();
-            let rendered = strahl::render(&list.scene, &options, &()).map_err(Failure::new)?;
+            let rendered = strahl::render(&list.scene, &options).map_err(Failure::new)?;
             time += start.elapsed().as_secs_f64();
             for y in square.y..square.y + square.height {
                 for x in square.x..square.x + square.width {

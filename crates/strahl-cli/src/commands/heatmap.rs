@@ -20,10 +20,11 @@ pub(crate) fn run(args: &HeatmapArgs) -> Result<(), Failure> {
     options.threads = threads(args.threads, &reporter);
     options.costs = true;
     let clock = Clock(Instant::now());
-    let rendered = strahl::render(&scene, &options, &clock).map_err(|error| match error {
-        RenderError::Cancelled => Failure::Interrupted,
-        other => Failure::new(other),
-    })?;
+    let rendered =
+        strahl::render_watched(&scene, &options, &clock).map_err(|error| match error {
+            RenderError::Cancelled => Failure::Interrupted,
+            other => Failure::new(other),
+        })?;
     let costs = rendered.costs.unwrap_or_default();
     let values: Vec<f32> = costs.iter().map(|c| args.metric.of(c)).collect();
     let max = args.scale.unwrap_or_else(|| usual_most(&values));

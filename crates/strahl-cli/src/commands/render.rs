@@ -211,7 +211,7 @@ impl Job<'_> {
             options.region = Some(tile::region(&scene, &options, place)?);
         }
         let start = Instant::now();
-        let rendered = match strahl::render(&scene, &options, watch) {
+        let rendered = match strahl::render_watched(&scene, &options, watch) {
             Ok(rendered) => rendered,
             Err(RenderError::Cancelled) => return Err(Failure::Interrupted),
             Err(other) => return Err(Failure::new(other)),

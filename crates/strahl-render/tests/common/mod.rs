@@ -239,5 +239,5 @@ pub(crate) fn rendered(scene: &RenderScene, change: impl FnOnce(&mut RenderOptio
     let mut options = RenderOptions::new(scene, 96, 64);
     options.threads = 1;
     change(&mut options);
-    render(scene, &options, &()).expect("renders")
+    render(scene, &options).expect("renders")
 }

@@ -68,7 +68,7 @@ fn ours(text: &str, quality: u8) -> Result<Pixels, String> {
     let scene = compile(&scene, &CompileOptions::default()).map_err(|e| format!("{e:?}"))?;
     let mut options = RenderOptions::new(&scene, SIZE.0, SIZE.1);
     options.threads = 1;
-    let film = render(&scene, &options, &()).expect("a picture").film;
+    let film = render(&scene, &options).expect("a picture").film;
     let clipped = |p: &[f32; 3]| p.map(|c| f64::from(c).clamp(0.0, 1.0));
     Ok(film.pixels.iter().map(clipped).collect())
 }

@@ -15,7 +15,7 @@ fn shown(scene: &str) -> [f64; 3] {
     let scene = compile(&scene, &CompileOptions::default()).expect("a valid scene");
     let mut options = RenderOptions::new(&scene, 1, 1);
     options.threads = 1;
-    let film = render(&scene, &options, &()).expect("a picture").film;
+    let film = render(&scene, &options).expect("a picture").film;
     film.pixels[0].map(|c| f64::from(c).clamp(0.0, 1.0))
 }
 
