@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-fn text(folder: &Path, args: &[&str]) -> String {
+pub(super) fn text(folder: &Path, args: &[&str]) -> String {
     let output = strahl(folder, &[&["explain"], args].concat());
     assert!(output.status.success(), "{args:?}: {}", stderr(&output));
     String::from_utf8(output.stdout).expect("text")
@@ -18,13 +18,13 @@ fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn json(folder: &Path, args: &[&str]) -> Value {
+pub(super) fn json(folder: &Path, args: &[&str]) -> Value {
     let json = text(folder, &[args, &["--format", "json"]].concat());
     serde_json::from_str(&json).expect("JSON")
 }
 
 /// A scene in POV-Ray's language in a folder of its own.
-fn pov(objects: &str) -> tempfile::TempDir {
+pub(super) fn pov(objects: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = format!(
         "#version 3.7;\nglobal_settings {{ assumed_gamma 1 }}\ncamera {{ location -5*z look_at 0 }}\n{objects}\n"
@@ -34,7 +34,7 @@ fn pov(objects: &str) -> tempfile::TempDir {
 }
 
 /// The middle pixel of a small picture with one ray per pixel.
-const MIDDLE: [&str; 7] = [
+pub(super) const MIDDLE: [&str; 7] = [
     "scene.pov",
     "--size",
     "40x30",
@@ -166,39 +166,6 @@ fn a_shading_model_takes_the_place_of_a_finish() {
     totals.sort();
     totals.dedup();
     assert_eq!(totals.len(), 4, "{totals:?}");
-}
-
-/// Layers, blends, glass, media, fog, dispersion, area lights: the printed factors multiply to the printed products.
-#[test]
-fn factors_multiply_to_their_products_whatever_the_texture() {
-    let lamp = "light_source { <3, 5, -6>, rgb <1, .9, .8> }";
-    for (what, scene) in [
-        ("fresnel", "sphere { 0, 1.5 pigment { rgbf <.9, .95, 1, .9> } finish { phong .5 reflection { 0, 1 fresnel on } conserve_energy }
-            interior { ior 1.5 fade_distance 1 fade_power 1001 fade_color <.5, .9, .7> } } plane { y, -2 pigment { checker rgb 1 rgb 0 } }"),
-        ("weakened", "box { <-9, -9, 0>, 9 texture { pigment { rgb <.2, .4, .9> } finish { crand .1 } }
-            texture { pigment { rgbft <1, .5, .3, .3, .4> } finish { specular .5 roughness .1 } } }
-            box { <-2, 1.5, -2>, <2, 1.6, 0> pigment { rgbf <1, .5, .5, .8> } }"),
-        ("specular", "sphere { 0, 1.5 texture { gradient x texture_map { [0 pigment { rgb x } finish { reflection .3 }]
-            [1 pigment { rgbt <0, 1, 0, .4> } normal { bumps 1 } finish { specular .6 metallic }] } scale 4 translate -2 } }"),
-        ("fog", "sphere { 0, 1 pigment { rgb 1 } finish { reflection { .1, .8 falloff 3 metallic } } } fog { distance 8 color rgb <.3, .4, .5> }"),
-        ("area", "sphere { 0, 1 pigment { rgb 1 } } light_source { <0, 6, 0>, rgb .5 area_light 3*x, 3*z, 5, 5 adaptive 1 }
-            box { <-1, 3, -1>, <.1, 3.2, 1> pigment { rgb 1 } }"),
-        ("area_illumination", "plane { z, 0 pigment { rgb 1 } finish { phong .5 } }
-            light_source { <0, 2, -6>, rgb .5 area_light 3*x, 3*z, 3, 3 area_illumination on }"),
-        ("transparency", "sphere { 0, 1.5 pigment { rgbf 1 } finish { reflection .1 } interior { ior 1.5 dispersion 1.1 dispersion_samples 5 } }
-            plane { -z, -5 pigment { gradient x } finish { ambient .5 emission .2 } }"),
-        ("exponent", "sphere { 0, 1 pigment { rgb .2 } finish { reflection { .8 exponent .7 } } } plane { y, -2 pigment { rgb .9 } }"),
-        ("irid", "sphere { 0, 1 pigment { rgb <.9, .8, .7> } finish { phong .4 specular .2 reflection { .1, .5 }
-            irid { .5 thickness .7 turbulence .4 } } } plane { y, -2 pigment { rgb .9 } }"),
-        ("blocked", "plane { z, 0 pigment { rgb 1 } finish { diffuse .4, .3 } } plane { -z, 5.5 pigment { rgb 1 } }"),
-    ] {
-        let folder = pov(&format!("{lamp}\n{scene}"));
-        let seen = check(&json(folder.path(), &MIDDLE));
-        assert!(seen.contains(&what.to_owned()), "{what}: {seen:?}");
-        for line in text(folder.path(), &MIDDLE).lines() {
-            assert!(line.chars().count() <= 100, "{what}: {line}");
-        }
-    }
 }
 
 /// Total reflection was not mentioned with Fresnel's equations.

@@ -39,9 +39,13 @@ fn close(a: f64, b: f64) -> bool {
 /// Checks every factor of every ray against its product, to the last bit; returns the kinds of things it found.
 pub(crate) fn check(json: &Value) -> Vec<String> {
     let mut seen = Vec::new();
-    let mut means: Vec<(Value, Triple, f64)> = Vec::new();
+    // The sum of each place, the number of its rays, and how often the place counts.
+    let mut means: Vec<(Value, Triple, f64, f64)> = Vec::new();
     for sample in list(&json["samples"]) {
         let rays = list(&sample["rays"]);
+        if sample["lens_ray"].is_number() {
+            seen.push("lens".to_owned());
+        }
         for ray in rays {
             seen.push(ray["kind"].as_str().expect("a word").to_owned());
             check_ray(ray, rays, &mut seen);
@@ -51,18 +55,27 @@ pub(crate) fn check(json: &Value) -> Vec<String> {
             assert_eq!(first["total"], sample["color"], "a linear scene");
         }
         match means.last_mut() {
-            Some((position, sum, count)) if *position == sample["position"] => {
+            Some((position, sum, count, _)) if *position == sample["position"] => {
                 *sum = plus(*sum, triple(&sample["color"]));
                 *count += 1.0;
             }
-            _ => means.push((sample["position"].clone(), triple(&sample["color"]), 1.0)),
+            _ => {
+                let times = number(&sample["times"]);
+                means.push((
+                    sample["position"].clone(),
+                    triple(&sample["color"]),
+                    1.0,
+                    times,
+                ));
+            }
         }
     }
     let mut mean = NONE;
-    for (_, sum, count) in &means {
-        mean = plus(mean, sum.map(|x| x / count));
+    let mut places = number(&json["places"]);
+    for (_, sum, count, times) in &means {
+        mean = plus(mean, sum.map(|x| x / count * times));
+        places += times - 1.0;
     }
-    let places = number(&json["places"]);
     for (a, b) in mean.iter().zip(triple(&json["color"])) {
         assert!(close(a / places, b), "{a} / {places} is not {b}");
     }
@@ -185,6 +198,7 @@ fn check_light(hit: &Value, light: &Value, seen: &mut Vec<String>) {
         }
         visible = times(visible, triple(&shadow["medium_behind"]));
         if shadow["beside_mask"] == true {
+            seen.push("beside mask".to_owned());
             visible = NONE;
         }
         assert_eq!(visible, triple(&shadow["visible"]), "{shadow:#}");

@@ -11,6 +11,7 @@ mod profile;
 mod questions;
 mod safety;
 mod submit;
+mod sums;
 mod tiles;
 
 use common::{stderr, strahl};
