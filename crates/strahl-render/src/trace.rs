@@ -129,7 +129,10 @@ impl<'s> TreeTracer<'s> {
             beyond: miss::uniform_background(scene).map(Sample::from),
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
-            settings,
+            settings: TraceSettings {
+                batch: settings.batch.clamp(1, PACKET),
+                ..settings
+            },
             transport: Transport::default(),
             media: MediaArena::default(),
             eye: Eye::default(),
@@ -187,6 +190,9 @@ impl<'s> TreeTracer<'s> {
         let Some(first) = traced.next().filter(|_| self.have_one_eye(rays)) else {
             return self.trace_each(rays);
         };
+        if self.settings.batch < rays.len() {
+            return self.trace_parts(rays);
+        }
         let (counts, stats) = (self.counts, self.intersector.stats);
         let eye = self.eye_media(first.origin);
         self.begin();
@@ -197,7 +203,7 @@ impl<'s> TreeTracer<'s> {
                 count += 1;
             }
         }
-        if !self.grow(count, PACKET, &mut ()) {
+        if !self.grow(count, self.settings.batch, &mut ()) {
             (self.counts, self.intersector.stats) = (counts, stats);
             return self.trace_each(rays);
         }
@@ -214,6 +220,18 @@ impl<'s> TreeTracer<'s> {
             .iter()
             .map(|ray| ray.as_ref().map_or(Sample::BLACK, &mut trace))
             .collect();
+        let roots = &mut self.roots[..samples.len()];
+        roots.copy_from_slice(&samples);
+        roots
+    }
+
+    /// Traces primary rays in smaller packets.
+    #[cold]
+    fn trace_parts(&mut self, rays: &[Option<Ray>]) -> &[Sample] {
+        let mut samples = ArrayVec::<Sample, PACKET>::new();
+        for part in rays.chunks(self.settings.batch) {
+            samples.extend(self.trace_packet(part).iter().copied());
+        }
         let roots = &mut self.roots[..samples.len()];
         roots.copy_from_slice(&samples);
         roots

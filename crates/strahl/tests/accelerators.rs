@@ -1,5 +1,5 @@
 //! The film of a scene has the same bits with every accelerator, vector instruction set, number of threads and order of tiles, with
-//! packets and without: for every scene of the repository, and for the Standard Procedural Databases if they are there (in
+//! packets and without, with any number of rays that go through the stages together: for every scene of the repository, and for the Standard Procedural Databases if they are there (in
 //! `shared/data/spd` beside the repository, or in the folder that `STRAHL_SPD` names).
 //!
 //! Pictures are small; `STRAHL_FULL=256x256 cargo test --release -p strahl --test accelerators` makes them larger.
@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use strahl::accel::AcceleratorKind;
 use strahl::sdl::{Options, Value};
-use strahl::tracing::{Prepared, RenderOptions, TileOrder};
+use strahl::tracing::{PACKET, Prepared, RenderOptions, RenderScene, Sampling, TileOrder};
 use strahl::{LoadOptions, load_path};
 
 fn accelerators() -> Vec<AcceleratorKind> {
@@ -44,6 +44,33 @@ fn size() -> (u32, u32) {
     (w.parse().expect("a width"), h.parse().expect("a height"))
 }
 
+/// Compares pictures of a scene in which different numbers of rays go through the stages together.
+fn compare_batches(scene: &RenderScene, path: &Path) {
+    let (width, height) = size();
+    for sampling in [Sampling::Center, Sampling::ADAPTIVE] {
+        let picture = |batch: Option<usize>| {
+            let mut options = RenderOptions {
+                threads: 1,
+                sampling,
+                ..RenderOptions::new(scene, width, height)
+            };
+            options.trace.packets = batch.is_some();
+            options.trace.batch = batch.unwrap_or(PACKET);
+            let done = strahl::render(scene, &options).expect("a picture");
+            (done.film.sha256(), done.rays)
+        };
+        let alone = picture(None);
+        for batch in [1, 2, 3, 7, PACKET] {
+            assert_eq!(
+                picture(Some(batch)),
+                alone,
+                "{} {sampling} {batch}",
+                path.display()
+            );
+        }
+    }
+}
+
 /// Compares all combinations for one scene.
 fn compare(path: &Path) {
     // Scenes with many parts are rendered with fewer.
@@ -69,6 +96,8 @@ fn compare(path: &Path) {
         return;
     };
     let prepared = Prepared::new(&scene).expect("valid");
+    let default = prepared.clone().build(AcceleratorKind::default());
+    compare_batches(&default, path);
     let (width, height) = size();
     let mut first = None;
     for kind in accelerators() {

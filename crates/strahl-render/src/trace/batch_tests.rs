@@ -153,13 +153,16 @@ fn traced_in_batches<'s>(
         })
         .collect();
     for size in [1, 2, 3, 7, PACKET] {
-        let mut tracer = tracer(settings);
-        let together: Vec<Sample> = rays
-            .chunks(size)
-            .flat_map(|batch| tracer.trace_packet(batch).to_vec())
-            .collect();
-        assert_eq!(together, alone, "{size}");
-        assert_eq!(tracer.counts, single.counts, "{size}");
+        // Fewer primary rays whose branches wait for each other, and fewer of all rays.
+        for (primary, batch) in [(size, PACKET), (PACKET, size)] {
+            let mut tracer = tracer(TraceSettings { batch, ..settings });
+            let together: Vec<Sample> = rays
+                .chunks(primary)
+                .flat_map(|rays| tracer.trace_packet(rays).to_vec())
+                .collect();
+            assert_eq!(together, alone, "{primary} {batch}");
+            assert_eq!(tracer.counts, single.counts, "{primary} {batch}");
+        }
     }
     assert!(single.counts.reflection > 500 && single.counts.refraction > 500);
     alone

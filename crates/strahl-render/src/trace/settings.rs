@@ -1,4 +1,5 @@
 use crate::scene::RenderScene;
+use strahl_accel::PACKET;
 use strahl_scene::WorkingSpace;
 use strahl_shade::ShadingModel;
 
@@ -29,6 +30,9 @@ pub struct TraceSettings {
     /// Whether neighbouring rays are traced in packets of sixteen, where the accelerator supports it. The picture is the same;
     /// costs of accelerators and pixels are shown without it.
     pub packets: bool,
+    /// How many of them go through the stages together, up to [`PACKET`]. The picture is the same, which tests show.
+    #[doc(hidden)]
+    pub batch: usize,
 }
 
 impl TraceSettings {
@@ -49,6 +53,7 @@ impl TraceSettings {
             shadow_cache: true,
             beams: true,
             packets: true,
+            batch: PACKET,
         }
     }
 
