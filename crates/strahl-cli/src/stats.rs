@@ -1,12 +1,13 @@
 use crate::input::LoadTimes;
 use serde::Serialize;
-use strahl::tracing::{RenderScene, Rendered};
+use strahl::tracing::{BatchMemory, RenderScene, Rendered, TraceSettings};
 
 /// The statistics file: its keys are a contract, documented in docs/src/statistics.md.
 #[derive(Debug, Serialize)]
 pub(crate) struct Stats<'a> {
     rays: Rays,
     accelerator: Accelerator<'a>,
+    batches: Batches,
     time_s: Times,
     threads: usize,
     simd: &'a str,
@@ -38,6 +39,15 @@ struct Accelerator<'a> {
 }
 
 #[derive(Debug, Serialize)]
+struct Batches {
+    bytes: usize,
+    point_bytes: usize,
+    ray_bytes: usize,
+    most_ray_bytes: usize,
+    list_bytes: usize,
+}
+
+#[derive(Debug, Serialize)]
 struct Times {
     load: f64,
     compile: f64,
@@ -65,6 +75,7 @@ impl<'a> Stats<'a> {
     pub(crate) fn new(
         scene: &'a RenderScene,
         rendered: &Rendered,
+        trace: &TraceSettings,
         sha256: &'a str,
         load: LoadTimes,
         render: RenderTimes,
@@ -90,6 +101,13 @@ impl<'a> Stats<'a> {
                 references: s.references,
                 node_visits: rendered.traversal.node_visits,
                 primitive_tests: rendered.traversal.primitive_tests,
+            },
+            batches: Batches {
+                bytes: rendered.batches.total(),
+                point_bytes: rendered.batches.points,
+                ray_bytes: rendered.batches.rays,
+                most_ray_bytes: BatchMemory::most_for_rays(trace),
+                list_bytes: rendered.batches.lists,
             },
             time_s: Times {
                 load: load.load,

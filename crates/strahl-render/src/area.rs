@@ -1,5 +1,6 @@
 //! The grids of area lights: which of their points are needed, and what is known of them.
 
+use crate::trace::bytes;
 use strahl_shade::{AreaLight, Color};
 
 /// If the visibilities of the corners of a cell differ by more than this, an adaptive light subdivides the cell: less than a
@@ -205,6 +206,20 @@ pub(crate) struct AreaMemory {
     pub(crate) next: Vec<Part>,
     /// The points of this round.
     pub(crate) wanted: Vec<Wanted>,
+}
+
+impl AreaMemory {
+    /// The bytes of its lists.
+    pub(crate) fn bytes(&self) -> usize {
+        let FirstRound {
+            cells,
+            points,
+            needed,
+        } = &self.first;
+        let first = bytes(cells) + bytes(points) + bytes(needed);
+        let grids = bytes(&self.grids.needed) + bytes(&self.grids.visible);
+        first + grids + bytes(&self.parts) + bytes(&self.next) + bytes(&self.wanted)
+    }
 }
 
 /// Whether the corners of a cell differ so much that it is divided.

@@ -3,6 +3,7 @@
 use crate::branch::Node;
 use crate::observer::RayKind;
 use crate::sampling::Sample;
+use crate::trace::bytes;
 use strahl_math::DVec3;
 use strahl_scene::{Background, BackgroundAlpha};
 use strahl_shade::Color;
@@ -67,6 +68,11 @@ impl Coverage {
             alpha,
             nodes: Vec::new(),
         }
+    }
+
+    /// The bytes of the list of nodes.
+    pub(crate) fn bytes(&self) -> usize {
+        bytes(&self.nodes)
     }
 
     /// Begins other trees.

@@ -85,7 +85,7 @@ pub use session::{Outcome, Session, Threads, Unfinished};
 pub use sink::{Pass, Sink, Tile};
 pub use strahl_accel::PACKET;
 pub use tiles::TileOrder;
-pub use trace::{RayCounts, SampleResult, TraceSettings};
+pub use trace::{BatchMemory, RayCounts, SampleResult, TraceSettings};
 pub use tree::{LightReport, PixelSample, PixelTree, RayNode, RayTree, explain};
 pub use view::{Output, View};
 pub use walk::{RayWalk, walk};

@@ -1,3 +1,4 @@
+use crate::trace::bytes;
 use strahl_shade::{Material, MaterialId};
 
 /// What is filled with one medium: an object with all its parts that have no medium of their own, or all of a material.
@@ -80,6 +81,11 @@ impl MediaStack {
 }
 
 impl MediaArena {
+    /// The bytes of the stacks.
+    pub(crate) fn bytes(&self) -> usize {
+        bytes(&self.entries)
+    }
+
     /// Forgets all stacks but that of the eye.
     #[inline]
     pub(crate) fn clear(&mut self) {

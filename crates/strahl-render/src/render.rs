@@ -22,7 +22,7 @@ use crate::film::{Film, FilmError, PixelInfo, Region};
 use crate::sampling::{Sample, Sampling};
 use crate::scene::RenderScene;
 use crate::tiles::TileOrder;
-use crate::trace::{RayCounts, TraceSettings};
+use crate::trace::{BatchMemory, RayCounts, TraceSettings};
 use crate::transport::Transport;
 use arrayvec::ArrayVec;
 use pixels::PixelTracer;
@@ -146,6 +146,8 @@ pub struct Rendered {
     pub rays: RayCounts,
     /// The cost of finding their hits.
     pub traversal: TraversalStats,
+    /// What the threads needed for their rays.
+    pub batches: BatchMemory,
     /// Threads used.
     pub threads: usize,
     /// The cost of each pixel of the film, row by row, if requested. With `Corners` a pixel has the cost of its top left

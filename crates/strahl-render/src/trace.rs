@@ -23,6 +23,7 @@ mod eye;
 mod gather;
 mod lights;
 mod medium;
+mod memory;
 mod miss;
 mod path;
 mod point;
@@ -34,10 +35,12 @@ mod stages;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
+pub(crate) use memory::bytes;
 pub(crate) use point::Point;
 use slots::Slots;
 
 pub use crate::outcome::{FirstHit, RayCounts, SampleResult};
+pub use memory::BatchMemory;
 pub use settings::TraceSettings;
 
 use crate::activity::Phase;

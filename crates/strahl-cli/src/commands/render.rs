@@ -319,6 +319,7 @@ impl Job<'_> {
         let stats = Stats::new(
             &traced.scene,
             &traced.rendered,
+            &traced.options.trace,
             &sha256,
             traced.times,
             times,

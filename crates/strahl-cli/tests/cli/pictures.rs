@@ -38,6 +38,11 @@ fn a_scene_becomes_a_picture_with_statistics() {
     ] {
         assert!(stats["accelerator"][key].is_number(), "accelerator.{key}");
     }
+    let bytes = |key: &str| stats["batches"][key].as_u64().expect("a number");
+    let [points, rays, lists] = ["point_bytes", "ray_bytes", "list_bytes"].map(bytes);
+    assert_eq!(bytes("bytes"), points + rays + lists);
+    // Glass and two thousand pixels, and still less than a thousandth of what the limit of rays allows.
+    assert!(points > 0 && lists > 0 && rays > 0 && rays < bytes("most_ray_bytes") / 1000);
     for key in ["load", "compile", "trace", "write", "total"] {
         assert!(
             stats["time_s"][key].as_f64().is_some_and(|t| t >= 0.0),

@@ -6,7 +6,7 @@ use crate::cost::PixelCost;
 use crate::film::{Film, Region};
 use crate::scene::RenderScene;
 use crate::sink::{Pass, Sink, Tile};
-use crate::trace::RayCounts;
+use crate::trace::{BatchMemory, RayCounts};
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -35,6 +35,8 @@ pub(super) struct Canvas {
     pub(super) film: Film,
     pub(super) counts: RayCounts,
     pub(super) traversal: TraversalStats,
+    /// The largest lists of a thread.
+    pub(super) batches: BatchMemory,
     /// Of the pixels of the film, if requested.
     pub(super) costs: Option<Vec<PixelCost>>,
 }
@@ -291,6 +293,9 @@ impl<S> Shared<'_, S> {
             // Other work of the same threads goes first: it is newer.
             rayon::yield_now();
         }
+        let batches = tracer.tree.memory();
+        let mut results = lock(&self.results);
+        results.canvas.batches = results.canvas.batches.largest(batches);
     }
 
     /// Hands parts of the film to a sink as they get complete, until all threads have ended. `Break` if the sink wants no more.

@@ -9,7 +9,7 @@ use crate::film::{Film, Region, try_filled};
 use crate::sampling::{Quadrants, Sample, Sampling};
 use crate::sink::{Pass, Sink};
 use crate::tiles::{TILE, tiles, tiles_of, whole_tiles};
-use crate::trace::RayCounts;
+use crate::trace::{BatchMemory, RayCounts};
 use arrayvec::ArrayVec;
 use std::collections::HashMap;
 use strahl_accel::TraversalStats;
@@ -81,6 +81,7 @@ impl Work {
                 film,
                 counts: RayCounts::default(),
                 traversal: TraversalStats::default(),
+                batches: BatchMemory::default(),
                 costs,
             },
             at: 0,
@@ -116,6 +117,7 @@ impl Work {
             film: self.canvas.film,
             rays: self.canvas.counts,
             traversal: self.canvas.traversal,
+            batches: self.canvas.batches,
             threads,
             costs: self.canvas.costs,
         }

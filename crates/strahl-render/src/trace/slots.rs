@@ -1,5 +1,6 @@
 //! Lists of large elements.
 
+use super::bytes;
 use std::ops::{Deref, DerefMut};
 
 /// A list of large elements whose slots are used again: an element is put together where it stays, because a copy of what has just been
@@ -20,6 +21,11 @@ impl<T> Default for Slots<T> {
 }
 
 impl<T: Clone> Slots<T> {
+    /// The bytes of the list.
+    pub(super) fn bytes(&self) -> usize {
+        bytes(&self.list)
+    }
+
     pub(super) fn clear(&mut self) {
         self.count = 0;
     }
