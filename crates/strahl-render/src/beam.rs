@@ -19,7 +19,7 @@ const _: () = assert!(SQUARES * SQUARES == u64::BITS);
 pub(crate) struct BeamMask {
     x: u32,
     y: u32,
-    /// A bit per square, row by row.
+    /// A bit per square, row by row; all of them in a tile with more squares, of which none is culled.
     seen: u64,
 }
 
@@ -35,6 +35,9 @@ impl BeamMask {
 
     /// Tests the beam of a tile, then those of its parts.
     pub(crate) fn of(tile: Region, scene: &RenderScene, rays: &PrimaryRays) -> Self {
+        if tile.width > TILE || tile.height > TILE {
+            return Self::all(tile);
+        }
         let culling = BeamCulling { tile, scene, rays };
         let mut seen = 0;
         if culling.sees(0, 0, SQUARES) {
@@ -51,7 +54,7 @@ impl BeamMask {
     #[inline]
     pub(crate) fn is_empty(&self, x: u32, y: u32) -> bool {
         let square = (y - self.y) / SQUARE * SQUARES + (x - self.x) / SQUARE;
-        self.seen >> square & 1 == 0
+        self.seen.wrapping_shr(square) & 1 == 0
     }
 }
 

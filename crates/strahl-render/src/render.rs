@@ -6,6 +6,8 @@ mod probe;
 mod refine;
 mod rounds;
 mod stage;
+#[cfg(test)]
+mod tile_tests;
 mod work;
 
 pub(crate) use crew::Crew;

@@ -10,7 +10,6 @@ use crate::observer::RayKind;
 use crate::render::Progress;
 use crate::sampling::{Division, Refinement, Sample};
 use crate::scene::RenderScene;
-use crate::tiles::TILE;
 use crate::trace::{RayCounts, SampleResult, TraceSettings, TreeTracer};
 use arrayvec::ArrayVec;
 use strahl_accel::{PACKET, TraversalStats};
@@ -233,8 +232,7 @@ impl PixelTracer<'_> {
         corners: bool,
     ) -> TileResult<Sample> {
         self.start_tile();
-        let small = tile.width <= TILE && tile.height <= TILE;
-        let mask = small.then(|| self.beam_mask(tile));
+        let mask = self.beam_mask(tile);
         let mut values = vec![Sample::BLACK; points.len()];
         let mut costs = Vec::new();
         let mut packet = Packet::new();
@@ -242,7 +240,7 @@ impl PixelTracer<'_> {
             if self.leaves() {
                 break;
             }
-            self.blind = mask.is_some_and(|mask| mask.is_empty(x, y));
+            self.blind = mask.is_empty(x, y);
             let options = self.options;
             let (dx, dy) = match corners {
                 true => (0.0, 0.0),
