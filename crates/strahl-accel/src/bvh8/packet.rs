@@ -2,7 +2,7 @@
 //!
 //! Rays in the same octant of directions are traversed together. A node is tested in two steps: all its children against
 //! intervals that contain the constants of all rays (`hull`), then each remaining child against all rays side by side
-//! (`lanes`). A ray that is left alone continues as a single ray. The traversal itself is here.
+//! (`lanes`). Rays of which too few are left together continue as single rays. The traversal itself is here.
 //!
 //! S. Boulos, I. Wald, P. Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets" (2006); I. Wald et al.,
 //! "Embree: A Kernel Framework for Efficient CPU Ray Tracing" (2014), its hybrid traversal.
@@ -52,6 +52,9 @@ impl Bvh8 {
     }
 }
 
+/// Rays of several octants have little in common: when no more than so many of them are left together, they continue as single rays.
+const ALONE: u32 = 4;
+
 /// The octants of directions, numbered by bits: one for each axis along which the rays go down.
 const OCTANTS: usize = 8;
 
@@ -97,6 +100,7 @@ impl Tree {
                 let walk = Walk {
                     hull: HullSlabs::new(isa, &hull, point, octant),
                     octant,
+                    alone: if others.is_some() { ALONE } else { 1 },
                 };
                 self.walk_together(
                     isa, nodes, &walk, members, &mut lanes, packet, visitor, stats,
@@ -163,22 +167,28 @@ impl Tree {
         let (mut current, mut mask) = (self.root, members);
         let mut cost = TraversalStats::default();
         'walk: loop {
-            if mask & mask.wrapping_sub(1) == 0 && !current.is_leaf() {
-                let lane = mask.trailing_zeros() as usize % PACKET;
-                let before = packet.t_max[lane];
-                let mut one = One {
-                    visitor: &mut *visitor,
-                    lane,
-                };
-                let alone = (current, walk.octant);
-                let t_max = self.walk_alone(isa, nodes, alone, lanes, packet, &mut one, &mut cost);
-                packet.t_max[lane] = t_max;
-                if t_max < before {
-                    lanes.lower(lane, t_max);
-                    farthest = lanes.farthest(members);
-                    if t_max == f64::NEG_INFINITY {
-                        alive &= !mask;
+            if mask.count_ones() <= walk.alone && !current.is_leaf() {
+                let mut changed = false;
+                for lane in lanes_of(mask) {
+                    let before = packet.t_max[lane];
+                    let mut one = One {
+                        visitor: &mut *visitor,
+                        lane,
+                    };
+                    let alone = (current, walk.octant);
+                    let t_max =
+                        self.walk_alone(isa, nodes, alone, lanes, packet, &mut one, &mut cost);
+                    packet.t_max[lane] = t_max;
+                    if t_max < before {
+                        changed = true;
+                        lanes.lower(lane, t_max);
+                        if t_max == f64::NEG_INFINITY {
+                            alive &= !(1 << lane);
+                        }
                     }
+                }
+                if changed {
+                    farthest = lanes.farthest(members);
                 }
             } else if !current.is_leaf() {
                 cost.node_visits += u64::from(mask.count_ones());
@@ -235,7 +245,7 @@ impl Tree {
         *stats += cost;
     }
 
-    /// Traverses a subtree with a ray that is left alone. A separate function: two such loops in one would compete for registers.
+    /// Traverses a subtree with a single ray. A separate function: two such loops in one would compete for registers.
     #[inline(never)]
     #[expect(
         clippy::too_many_arguments,
@@ -291,6 +301,8 @@ fn nearest_last(list: &mut [Waiting]) {
 struct Walk<I: Isa> {
     hull: HullSlabs<I>,
     octant: usize,
+    /// So many rays that are left together continue as single rays.
+    alone: u32,
 }
 
 /// The visitor of one ray of a packet.
