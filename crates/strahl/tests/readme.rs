@@ -1,7 +1,7 @@
-//! The Rust program of the README, which is the example `glass`, too.
+//! The Rust program of the README: its copy in `readme/glass.rs` is the same, and runs.
 #![allow(clippy::print_stderr, reason = "the program shows its progress")]
 
-include!("../examples/glass.rs");
+include!("readme/glass.rs");
 
 /// A program without what rustfmt does to long lines.
 fn on_one_line(program: &str) -> String {
@@ -12,7 +12,7 @@ fn on_one_line(program: &str) -> String {
 #[test]
 fn the_program_of_the_readme_writes_its_picture() {
     let readme = on_one_line(include_str!("../../../README.md"));
-    assert!(readme.contains(&on_one_line(include_str!("../examples/glass.rs"))));
+    assert!(readme.contains(&on_one_line(include_str!("readme/glass.rs"))));
     // The program writes to the current folder. No other test runs in this process.
     let folder = tempfile::tempdir().expect("a folder");
     std::env::set_current_dir(&folder).expect("exists");
