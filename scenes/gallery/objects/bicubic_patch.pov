@@ -1,5 +1,13 @@
 // A free-form surface by 16 control points in four rows: it touches the corners, the others pull it. Patches with a common border
 // join without a gap.
+//
+// `S(u, v) = sum w_ij P_ij B_i(u) B_j(v) / sum w_ij B_i(u) B_j(v)` for u and v from 0 to 1, with the points `P`, their weights `w` (1 if none is
+// written) and the Bernstein polynomials of degree 3, `B_i(t) = binomial(3, i) t^i (1 - t)^(3 - i)`.
+//
+// Limits: it has no inside, so it cuts nothing. Weights are greater than 0, and none is more than 10^9 times another. Where all of the surface is
+// seen as a line, no ray hits it.
+//
+// G. Farin, Curves and Surfaces for CAGD, chapters 14 and 17.
 #include "../gallery.inc"
 
 bicubic_patch {

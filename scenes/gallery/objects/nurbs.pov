@@ -1,5 +1,15 @@
 // A NURBS surface: control points with weights on two lists of knots. Its weighted circle is exact, and loops of curves cut it:
 // here a wavy border and round holes, at any size without facets.
+//
+// `S(u, v) = sum w_ij P_ij N_i(u) N_j(v) / sum w_ij N_i(u) N_j(v)` with the points `P`, their weights `w` and the B-splines `N` on the knots `t`:
+// `N_i,0` is 1 from `t_i` to `t_(i+1)` and 0 elsewhere, and `N_i,p(u) = (u - t_i) / (t_(i+p) - t_i) N_i,p-1(u) + (t_(i+p+1) - u) / (t_(i+p+1) -
+// t_(i+1)) N_(i+1),p-1(u)`.
+//
+// Limits: degrees are from 1 to 9; there are 8388608 control points after knots are inserted, at most; no weight is more than 10^9 times another.
+// Only surfaces that are closed and not trimmed have an inside. Two surfaces that are trimmed along different curves are as close there as the
+// curves are.
+//
+// L. Piegl, W. Tiller, The NURBS Book, 2nd ed., chapters 2 to 4.
 #include "../gallery.inc"
 
 // A full circle of four quarters: nine points, their weights, their knots.
