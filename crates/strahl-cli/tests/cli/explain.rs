@@ -401,3 +401,72 @@ fn pages_have_everything_in_them() {
     assert!(!output.status.success());
     assert!(stderr(&output).contains("--pixel X,Y"));
 }
+
+/// Surfaces and fractals: the name of the object, its line, and a hit on it. The ones that are given a height are met there.
+#[test]
+fn hits_of_surfaces_and_fractals_are_explained() {
+    let rows = [
+        (
+            "bicubic_patch",
+            "bicubic_patch { type 1 flatness 0 u_steps 3 v_steps 3
+               #for (J, 0, 3) #for (I, 0, 3) <I - 1.5, J - 1.5, 0> #end #end }",
+            Some(0.0),
+        ),
+        (
+            "nurbs",
+            "nurbs { degree 1 row { <-1, -1, 0.5>, <1, -1, 0.5> } row { <-1, 1, 0.5>, <1, 1, 0.5> } }",
+            Some(0.5),
+        ),
+        (
+            "subdivision",
+            "subdivision { points { <-1, -1, 0>, <1, -1, 0>, <1, 1, 0>, <-1, 1, 0> } face { 0, 1, 2, 3 } }",
+            Some(0.0),
+        ),
+        (
+            "terrain",
+            "terrain { extent <-3, -3>, <3, 3> rotate -60*x }",
+            None,
+        ),
+        ("mandelbulb", "mandelbulb { 8 }", None),
+        (
+            "menger",
+            "menger { <-0.2, -0.2, -1>, <2.8, 2.8, 2>, 1 }",
+            Some(-1.0),
+        ),
+    ];
+    for (number, (kind, object, height)) in rows.into_iter().enumerate() {
+        // The line of the first is the fourth.
+        let lines = "\n".repeat(number);
+        let folder = pov(&format!("{lines}{object}\nlight_source {{ -9*z, 1 }}"));
+        let place = format!("scene.pov:{}:1", 4 + number);
+        let printed = text(folder.path(), &MIDDLE);
+        let expected = format!("hits {kind} ({place}, element ");
+        assert!(printed.contains(&expected), "{expected}: {printed}");
+        let json = json(folder.path(), &MIDDLE);
+        let ray = &json["samples"][0]["rays"][0];
+        let hit = &ray["hit"];
+        assert_eq!(
+            (&hit["object"], &hit["source"]),
+            (&kind.into(), &place.as_str().into())
+        );
+        let vector = |v: &Value| [0, 1, 2].map(|i| v[i].as_f64().expect("a number"));
+        let [normal, point] = ["normal", "position"].map(|key| vector(&hit[key]));
+        let [origin, direction] = ["origin", "direction"].map(|key| vector(&ray["ray"][key]));
+        let t = hit["t"].as_f64().expect("a number");
+        for i in 0..3 {
+            assert!(
+                (origin[i] + t * direction[i] - point[i]).abs() < 1e-9,
+                "{kind}: {hit}"
+            );
+        }
+        let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        assert!(
+            (dot(normal, normal) - 1.0).abs() < 1e-9,
+            "{kind}: {normal:?}"
+        );
+        assert!(dot(normal, direction) < 0.0, "{kind}: {normal:?}");
+        if let Some(height) = height {
+            assert!((point[2] - height).abs() < 1e-9, "{kind}: {point:?}");
+        }
+    }
+}
