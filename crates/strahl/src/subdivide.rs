@@ -141,6 +141,7 @@ fn outline(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
 mod tests {
     use super::*;
     use crate::{Format, LoadOptions, load_bytes};
+    use strahl_geometry::Primitive as _;
 
     const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n\
         f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
@@ -187,6 +188,71 @@ mod tests {
         let found = data(text, "obj", SubdivisionScheme::CatmullClark);
         assert_eq!((found.points.len(), found.uvs.len()), (6, 8));
         assert_eq!(found.uvs[0], found.uvs[4]);
+    }
+
+    /// A cube of 24 vertices, four for each side as other programs write them, and two triangles for each side. The buffer is in the file.
+    fn gltf_cube() -> String {
+        const DIGITS: &[u8; 64] =
+            b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        let sides = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let corners = sides
+            .iter()
+            .flatten()
+            .flat_map(|n| [n & 1, n >> 1 & 1, n >> 2]);
+        let mut bytes: Vec<u8> = corners
+            .flat_map(|bit| (2.0 * bit as f32 - 1.0).to_le_bytes())
+            .collect();
+        bytes.extend((0..6).flat_map(|s| [0, 1, 2, 0, 2, 3].map(|k| 4 * s + k)));
+        // Its length is a multiple of three.
+        let text: String = bytes
+            .chunks(3)
+            .flat_map(|c| {
+                [
+                    c[0] >> 2,
+                    (c[0] << 4 | c[1] >> 4) & 63,
+                    (c[1] << 2 | c[2] >> 6) & 63,
+                    c[2] & 63,
+                ]
+            })
+            .map(|digit| char::from(DIGITS[usize::from(digit)]))
+            .collect();
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},
+            "buffers":[{{"byteLength":324,"uri":"data:application/octet-stream;base64,{text}"}}],
+            "bufferViews":[{{"buffer":0,"byteLength":288}},{{"buffer":0,"byteOffset":288,"byteLength":36}}],
+            "accessors":[
+              {{"bufferView":0,"componentType":5126,"count":24,"type":"VEC3","min":[-1,-1,-1],"max":[1,1,1]}},
+              {{"bufferView":1,"componentType":5121,"count":36,"type":"SCALAR"}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
+            "scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}]}}"#
+        )
+    }
+
+    /// Files in glTF know triangles only; those of a cube's sides meet, and it has an inside.
+    #[test]
+    fn triangles_of_gltf_are_one_surface() {
+        let triangles = CUBE.replace("f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n", "\
+            f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n");
+        for scheme in [SubdivisionScheme::CatmullClark, SubdivisionScheme::Loop] {
+            let found = data(&gltf_cube(), "gltf", scheme);
+            assert_eq!((found.scheme, found.points.len()), (scheme, 8));
+            assert_eq!(found.sizes, [3; 12]);
+            // The points are those of the other format in another order.
+            let faces = |data: &SubdivisionData| {
+                let corners = data.indices.iter().map(|n| data.points[*n as usize]);
+                corners.map(|p| p.to_array()).collect::<Vec<_>>()
+            };
+            assert_eq!(faces(&found), faces(&data(&triangles, "obj", scheme)));
+            let surface = Subdivision::try_new(&found).expect("a surface");
+            assert!(surface.as_solid().is_some());
+        }
     }
 
     #[test]

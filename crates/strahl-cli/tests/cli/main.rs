@@ -10,6 +10,7 @@ mod pictures;
 mod profile;
 mod questions;
 mod safety;
+mod subdivide;
 mod submit;
 mod sums;
 mod tiles;
