@@ -62,18 +62,23 @@ impl ArcBody {
         (distance, (reach * outward + height * climb) / distance)
     }
 
-    /// The first point of a chord, from its beginning, that is not outside of an arc.
-    fn first(&self, arc: &Arc, chord: &Chord, side: f64) -> Option<f64> {
-        let mut s = -chord.half;
+    /// The first point of a part of a chord that is not outside of an arc. `side` is 1 from the beginning of the part, -1 from its end.
+    fn first(&self, arc: &Arc, chord: &Chord, part: [f64; 2], side: f64) -> Option<f64> {
+        let [begin, end] = part;
+        let (mut s, end) = if side > 0.0 {
+            (begin, end)
+        } else {
+            (-end, -begin)
+        };
+        let d = chord.along * side;
         for _ in 0..ROUNDS {
-            let d = chord.along * side;
             let (distance, slope) = self.distance(arc, chord.start + d * s, d);
             let over = distance - arc.radius;
             if over <= 0.0 {
                 return Some(s * side);
             }
             let next = s - over / slope;
-            if !(slope < 0.0) || next > chord.half {
+            if !(slope < 0.0) || next > end {
                 return None;
             }
             if next <= s {
@@ -101,6 +106,44 @@ impl ArcBody {
         })
     }
 
+    /// The span of a chord that is inside of an arc and between its heights. Newton's method begins at these heights: where the line is inside already,
+    /// it ends there.
+    fn part(&self, arc: &Arc, chord: &Chord, facet: u32, caps: u32) -> Option<Span> {
+        let height = chord.start.dot(self.axis) + arc.height;
+        let climb = chord.along.dot(self.axis);
+        let slab = if climb == 0.0 {
+            if !(arc.low <= height && height <= arc.high) {
+                return None;
+            }
+            [(f64::NEG_INFINITY, facet), (f64::INFINITY, facet)]
+        } else {
+            let low = ((arc.low - height) / climb, caps);
+            let high = ((arc.high - height) / climb, caps + 1);
+            if climb > 0.0 {
+                [low, high]
+            } else {
+                [high, low]
+            }
+        };
+        let [(enter, enter_facet), (exit, exit_facet)] = slab;
+        let begin = if enter > -chord.half {
+            enter
+        } else {
+            -chord.half
+        };
+        let end = if exit < chord.half { exit } else { chord.half };
+        if !(begin <= end) {
+            return None;
+        }
+        let near = self.first(arc, chord, [begin, end], 1.0)?;
+        let far = self.first(arc, chord, [begin, end], -1.0)?;
+        let at = |s: f64, slab: f64, slab_facet: u32| End {
+            t: chord.t + s,
+            facet: if s == slab { slab_facet } else { facet },
+        };
+        Span::LINE.cut(at(near, enter, enter_facet), at(far, exit, exit_facet))
+    }
+
     /// The span in which a line is inside.
     fn line(&self, ray: &Ray) -> Option<Span> {
         let mut whole: Option<Span> = None;
@@ -110,46 +153,7 @@ impl ArcBody {
             let Some(chord) = self.chord(arc, ray) else {
                 continue;
             };
-            let (Some(near), Some(far)) =
-                (self.first(arc, &chord, 1.0), self.first(arc, &chord, -1.0))
-            else {
-                continue;
-            };
-            let end = |s: f64| End {
-                t: chord.t + s,
-                facet,
-            };
-            let (enter, exit) = (end(near), end(far));
-            let Some(span) = Span::LINE.cut(enter, exit) else {
-                continue;
-            };
-            // The slab between the heights.
-            let height = chord.start.dot(self.axis) + arc.height;
-            let climb = ray.direction.dot(self.axis);
-            let slab = if climb == 0.0 {
-                if !(arc.low <= height && height <= arc.high) {
-                    continue;
-                }
-                Span::LINE
-            } else {
-                let at = |h: f64, facet: u32| End {
-                    t: chord.t + (h - height) / climb,
-                    facet,
-                };
-                let (low, high) = (at(arc.low, caps), at(arc.high, caps + 1));
-                if climb > 0.0 {
-                    Span {
-                        enter: low,
-                        exit: high,
-                    }
-                } else {
-                    Span {
-                        enter: high,
-                        exit: low,
-                    }
-                }
-            };
-            let Some(part) = span.cut(slab.enter, slab.exit) else {
+            let Some(part) = self.part(arc, &chord, facet, caps) else {
                 continue;
             };
             whole = Some(match whole {
@@ -279,7 +283,8 @@ impl ArcBody {
         [low, high]
     }
 
-    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    /// The place of a hit relative to the base, on the surface, and the surface there without texture coordinates.
+    fn bare_surface(&self, ray: &Ray, hit: &PrimHit) -> (DVec3, SurfacePoint) {
         let p = (ray.origin - self.base) + ray.direction * hit.t;
         let height = p.dot(self.axis);
         let across = p - self.axis * height;
@@ -299,6 +304,12 @@ impl ArcBody {
         let position = self.base + local;
         let normal = self.normal(hit.surface.facet, p);
         let error = point_error(position, self.extent(), 32);
+        (local, SurfacePoint::bare(position, error, normal))
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let (local, bare) = self.bare_surface(ray, hit);
+        let [low, high] = self.ends();
         // Longitude, and latitude as seen from halfway between the ends.
         let second = self.first.cross(self.axis);
         let around = det::atan2(local.dot(second), local.dot(self.first));
@@ -311,7 +322,7 @@ impl ArcBody {
         );
         SurfacePoint {
             uv: if uv.is_finite() { uv } else { DVec2::ZERO },
-            ..SurfacePoint::bare(position, error, normal)
+            ..bare
         }
     }
 
@@ -391,6 +402,10 @@ macro_rules! made_of_arcs {
 
             fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
                 self.body.surface_at(ray, hit)
+            }
+
+            fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, surface: &mut SurfacePoint) {
+                *surface = self.body.bare_surface(ray, hit).1;
             }
 
             fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
