@@ -88,6 +88,11 @@ impl CullBounds {
 ///
 /// Boxes end at 2⁶⁴ and scaled directions at 2⁻⁶⁰, so no product overflows and no difference is a NaN: the minima and maxima of
 /// the loop mean the same on every processor.
+///
+/// The vector loops compare the bits of the numbers as integers ([`Isa::max_bits`]). The latest start of three slabs and of the range is at 0 or
+/// later for rays that begin at 0 or later, and so it is found; the earliest end is found unless it is negative, and then another negative one is, so
+/// that the box is left out as it must be. For lines, whose range begins before 0, the start may be too early and the end too late: more boxes
+/// are met, and none is lost.
 pub(crate) struct CullRay {
     axes: [CullAxis; 3],
     clock: CullClock,
@@ -110,11 +115,13 @@ impl CullClock {
         scale: 1.0,
     };
 
-    /// A lower end of the range: rounded down.
+    /// A lower end of the range: rounded down, but not below 0 for rays that begin at 0 or later. Such a ray, moved or not, meets a box
+    /// at parameters from 0 on, and the computed end of the box is not before the true one.
     #[inline(always)]
     pub(crate) fn t_min(&self, t_min: f64) -> f32 {
-        let (t_min, error) = rounded((t_min - self.offset) * self.scale);
-        t_min - error
+        let (start, error) = rounded((t_min - self.offset) * self.scale);
+        let low = start - error;
+        if t_min >= 0.0 && low <= 0.0 { 0.0 } else { low }
     }
 
     /// An upper end of the range: rounded up.

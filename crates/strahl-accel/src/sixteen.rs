@@ -95,8 +95,8 @@ impl<I: Isa> SixteenSlabs<I> {
                 isa.mul_add_f32x16(planes(axis, first), self.rd[axis], self.minus_near[axis]);
             let far =
                 isa.mul_add_f32x16(planes(axis, 1 - first), self.rd[axis], self.minus_far[axis]);
-            enter = isa.max_f32x16(enter, near);
-            leave = isa.min_f32x16(leave, far);
+            enter = isa.max_bits_x16(enter, near);
+            leave = isa.min_bits_x16(leave, far);
         }
         (enter, isa.le_f32x16(enter, leave))
     }

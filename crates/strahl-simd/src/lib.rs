@@ -69,6 +69,12 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn min_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// The larger number in each lane; neither may be NaN.
     fn max_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// The number in each lane whose bits are the smaller signed integer: that is the smaller number if one of them is positive,
+    /// and the larger of two negative ones. Integers are compared in one cycle where numbers take four.
+    fn min_bits(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// The number in each lane whose bits are the larger signed integer: that is the larger number if one of them is positive,
+    /// and the smaller of two negative ones.
+    fn max_bits(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// `a b`.
     fn mul_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// `a - b`.
@@ -118,6 +124,10 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn min_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
     /// The larger number in each lane; neither may be NaN.
     fn max_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// As [`Isa::min_bits`].
+    fn min_bits_x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// As [`Isa::max_bits`].
+    fn max_bits_x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
     /// The lanes where `a < b`; false for NaN.
     fn lt_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32;
     /// The lanes where `a <= b`; false for NaN.

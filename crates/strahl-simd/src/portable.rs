@@ -107,6 +107,16 @@ macro_rules! pairs_of_eight {
         }
 
         #[inline(always)]
+        fn min_bits_x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
+            [self.min_bits(a[0], b[0]), self.min_bits(a[1], b[1])]
+        }
+
+        #[inline(always)]
+        fn max_bits_x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
+            [self.max_bits(a[0], b[0]), self.max_bits(a[1], b[1])]
+        }
+
+        #[inline(always)]
         fn lt_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32 {
             self.lt_f32(a[0], b[0]) | self.lt_f32(a[1], b[1]) << 8
         }
@@ -162,6 +172,18 @@ macro_rules! lane_by_lane {
         #[inline(always)]
         fn max_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
             std::array::from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+        }
+
+        #[inline(always)]
+        fn min_bits(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+            let bits = |x: f32| x.to_bits() as i32;
+            std::array::from_fn(|i| if bits(a[i]) < bits(b[i]) { a[i] } else { b[i] })
+        }
+
+        #[inline(always)]
+        fn max_bits(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+            let bits = |x: f32| x.to_bits() as i32;
+            std::array::from_fn(|i| if bits(a[i]) > bits(b[i]) { a[i] } else { b[i] })
         }
 
         #[inline(always)]

@@ -64,16 +64,19 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
     for v in [culled[0], culled[1], isa.min_f32(p, q), isa.max_f32(p, q)] {
         bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
     }
+    for v in [isa.min_bits(p, q), isa.max_bits(p, q)] {
+        bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
+    }
     bits.extend([isa.le_f32(p, q), isa.le_f32(q, p)].map(u64::from));
     bits.extend([isa.lt_f32(p, q), isa.lt_f32(q, p)].map(u64::from));
     bits
 }
 
 /// Where each operation on sixteen lanes gives what it should; all products are exact.
-fn sixteen<I: Isa>(isa: I) -> [u32; 9] {
+fn sixteen<I: Isa>(isa: I) -> [u32; 13] {
     let x: [f32; 16] = std::array::from_fn(|i| i as f32 * 0.5 - 3.0);
     let v = isa.load_f32x16(&Lanes16(x));
-    let two = isa.splat_f32x16(2.0);
+    let (two, minus) = (isa.splat_f32x16(2.0), isa.splat_f32x16(-2.0));
     let is = |found: I::F32x16, expected: fn(f32) -> f32| {
         let expected = isa.load_f32x16(&Lanes16(x.map(expected)));
         isa.le_f32x16(found, expected) & isa.le_f32x16(expected, found)
@@ -87,6 +90,15 @@ fn sixteen<I: Isa>(isa: I) -> [u32; 9] {
         is(isa.abs_f32x16(v), f32::abs),
         is(isa.min_f32x16(v, two), |x| x.min(2.0)),
         is(isa.max_f32x16(v, two), |x| x.max(2.0)),
+        is(isa.min_bits_x16(v, two), |x| x.min(2.0)),
+        is(isa.max_bits_x16(v, two), |x| x.max(2.0)),
+        // Of two negative numbers the wrong one.
+        is(isa.min_bits_x16(v, minus), |x| {
+            if x < 0.0 { x.max(-2.0) } else { -2.0 }
+        }),
+        is(isa.max_bits_x16(v, minus), |x| {
+            if x < 0.0 { x.min(-2.0) } else { x }
+        }),
         isa.lt_f32x16(v, two),
     ]
 }
@@ -99,7 +111,9 @@ fn sixteen_lanes_are_computed_like_one() {
         // -3 + 0.5 i < 2 for the first ten.
         assert_eq!(
             found,
-            [all, all, all, all, all, all, all, all, 0x3ff],
+            [
+                all, all, all, all, all, all, all, all, all, all, all, all, 0x3ff
+            ],
             "{}",
             simd.level()
         );

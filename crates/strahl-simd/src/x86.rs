@@ -128,6 +128,24 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn min_bits(self, a: __m256, b: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX2.
+            unsafe {
+                let (a, b) = (_mm256_castps_si256(a), _mm256_castps_si256(b));
+                _mm256_castsi256_ps(_mm256_min_epi32(a, b))
+            }
+        }
+
+        #[inline(always)]
+        fn max_bits(self, a: __m256, b: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX2.
+            unsafe {
+                let (a, b) = (_mm256_castps_si256(a), _mm256_castps_si256(b));
+                _mm256_castsi256_ps(_mm256_max_epi32(a, b))
+            }
+        }
+
+        #[inline(always)]
         fn mul_f32(self, a: __m256, b: __m256) -> __m256 {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_mul_ps(a, b) }
@@ -447,6 +465,24 @@ impl Isa for Avx512 {
     fn max_f32x16(self, a: __m512, b: __m512) -> __m512 {
         // SAFETY: `self` proves AVX-512.
         unsafe { _mm512_max_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn min_bits_x16(self, a: __m512, b: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe {
+            let (a, b) = (_mm512_castps_si512(a), _mm512_castps_si512(b));
+            _mm512_castsi512_ps(_mm512_min_epi32(a, b))
+        }
+    }
+
+    #[inline(always)]
+    fn max_bits_x16(self, a: __m512, b: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe {
+            let (a, b) = (_mm512_castps_si512(a), _mm512_castps_si512(b));
+            _mm512_castsi512_ps(_mm512_max_epi32(a, b))
+        }
     }
 
     #[inline(always)]

@@ -101,14 +101,14 @@ impl<I: Isa> HullSlabs<I> {
             self.near(isa, node, 1),
             self.near(isa, node, 2),
         );
-        let enter = isa.max_f32(isa.max_f32(x, y), isa.max_f32(z, self.t_min));
+        let enter = isa.max_bits(isa.max_bits(x, y), isa.max_bits(z, self.t_min));
         let (x, y, z) = (
             self.far(isa, node, 0),
             self.far(isa, node, 1),
             self.far(isa, node, 2),
         );
         let farthest = isa.splat_f32(farthest);
-        let leave = isa.min_f32(isa.min_f32(x, y), isa.min_f32(z, farthest));
+        let leave = isa.min_bits(isa.min_bits(x, y), isa.min_bits(z, farthest));
         (enter, isa.le_f32(enter, leave))
     }
 }

@@ -206,14 +206,14 @@ impl Lanes {
             self.crossed(isa, node, child, 2, 4 + first[2], &self.minus_near),
         ];
         let t_min = isa.load_f32x16(&self.t_min);
-        let enter = isa.max_f32x16(isa.max_f32x16(x, y), isa.max_f32x16(z, t_min));
+        let enter = isa.max_bits_x16(isa.max_bits_x16(x, y), isa.max_bits_x16(z, t_min));
         let [x, y, z] = [
             self.crossed(isa, node, child, 0, 1 - first[0], &self.minus_far),
             self.crossed(isa, node, child, 1, 3 - first[1], &self.minus_far),
             self.crossed(isa, node, child, 2, 5 - first[2], &self.minus_far),
         ];
         let far = isa.load_f32x16(&self.far);
-        let leave = isa.min_f32x16(isa.min_f32x16(x, y), isa.min_f32x16(z, far));
+        let leave = isa.min_bits_x16(isa.min_bits_x16(x, y), isa.min_bits_x16(z, far));
         isa.le_f32x16(enter, leave)
     }
 
