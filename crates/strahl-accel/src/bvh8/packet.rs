@@ -160,10 +160,9 @@ impl Tree {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let first = walk.hull.first;
         let mut farthest = lanes.farthest(members);
         let mut alive = members;
-        let mut stack = ArrayVec::<Waiting, { MAX_DEPTH * (WIDTH - 1) + 1 }>::new();
+        let mut stack = Stack::new();
         let (mut current, mut mask) = (self.root, members);
         let mut cost = TraversalStats::default();
         'walk: loop {
@@ -179,13 +178,7 @@ impl Tree {
                     let t_max =
                         self.walk_alone(isa, nodes, alone, lanes, packet, &mut one, &mut cost);
                     packet.t_max[lane] = t_max;
-                    if t_max < before {
-                        changed = true;
-                        lanes.lower(lane, t_max);
-                        if t_max == f64::NEG_INFINITY {
-                            alive &= !(1 << lane);
-                        }
-                    }
+                    changed |= lowered(lanes, &mut alive, lane, before, t_max);
                 }
                 if changed {
                     farthest = lanes.farthest(members);
@@ -193,21 +186,8 @@ impl Tree {
             } else if !current.is_leaf() {
                 cost.node_visits += u64::from(mask.count_ones());
                 let node = &nodes[current.node()];
-                let (keys, mut candidates) = walk.hull.enter(isa, node, farthest);
-                let keys = isa.store_f32(keys).0;
                 let bottom = stack.len();
-                while candidates != 0 {
-                    let child = candidates.trailing_zeros() as usize % WIDTH;
-                    candidates &= candidates - 1;
-                    let met = lanes.enter(isa, node, child, first) & mask;
-                    if met != 0 {
-                        stack.push(Waiting {
-                            near: keys[child],
-                            child: node.children[child],
-                            lanes: met,
-                        });
-                    }
-                }
+                push_children(isa, node, &walk.hull, lanes, mask, farthest, &mut stack);
                 if !V::ANY {
                     nearest_last(&mut stack[bottom..]);
                 }
@@ -218,13 +198,8 @@ impl Tree {
                 visitor.visit_leaf_together(isa, &leaf, mask, &mut packet.t_max);
                 let mut changed = false;
                 for lane in lanes_of(mask) {
-                    if packet.t_max[lane] < before[lane] {
-                        changed = true;
-                        lanes.lower(lane, packet.t_max[lane]);
-                        if packet.t_max[lane] == f64::NEG_INFINITY {
-                            alive &= !(1 << lane);
-                        }
-                    }
+                    let t_max = packet.t_max[lane];
+                    changed |= lowered(lanes, &mut alive, lane, before[lane], t_max);
                 }
                 if changed {
                     farthest = lanes.farthest(members);
@@ -281,6 +256,49 @@ struct Waiting {
     near: f32,
     child: Child,
     lanes: u32,
+}
+
+/// The children to visit.
+type Stack = ArrayVec<Waiting, { MAX_DEPTH * (WIDTH - 1) + 1 }>;
+
+/// Pushes the children of a node that some of the rays in `mask` may meet, each with these rays.
+#[inline(always)]
+fn push_children<I: Isa>(
+    isa: I,
+    node: &Node,
+    hull: &HullSlabs<I>,
+    lanes: &Lanes,
+    mask: u32,
+    farthest: f32,
+    stack: &mut Stack,
+) {
+    let (keys, mut candidates) = hull.enter(isa, node, farthest);
+    let keys = isa.store_f32(keys).0;
+    while candidates != 0 {
+        let child = candidates.trailing_zeros() as usize % WIDTH;
+        candidates &= candidates - 1;
+        let met = lanes.enter(isa, node, child, hull.first) & mask;
+        if met != 0 {
+            stack.push(Waiting {
+                near: keys[child],
+                child: node.children[child],
+                lanes: met,
+            });
+        }
+    }
+}
+
+/// Takes over the end of the range of a ray, and whether it is lower than before. A ray that needs no more hits leaves those that are `alive`.
+#[inline(always)]
+fn lowered(lanes: &mut Lanes, alive: &mut u32, lane: usize, before: f64, t_max: f64) -> bool {
+    if t_max < before {
+        lanes.lower(lane, t_max);
+        if t_max == f64::NEG_INFINITY {
+            *alive &= !(1 << lane);
+        }
+        return true;
+    }
+    false
 }
 
 /// Sorts a few children, the nearest last.

@@ -351,33 +351,15 @@ impl Tree {
                         continue;
                     }
                     let near = isa.store_f32(near).0;
-                    let waiting = |i: usize| Waiting::new(node.child(i), near[i]);
-                    let a = waiting(first);
-                    let b = waiting(hit.trailing_zeros() as usize);
-                    hit &= hit - 1;
-                    let (mut nearest, other) = if b < a { (b, a) } else { (a, b) };
-                    fetch_ahead(isa, nodes, visitor, other.child());
-                    if hit == 0 {
-                        stack.push(other);
-                        current = nearest.child();
-                        continue;
-                    }
-                    let bottom = stack.len();
-                    stack.push(other);
-                    while hit != 0 {
-                        let next = waiting(hit.trailing_zeros() as usize);
-                        hit &= hit - 1;
-                        let later;
-                        (nearest, later) = if next < nearest {
-                            (next, nearest)
-                        } else {
-                            (nearest, next)
-                        };
-                        fetch_ahead(isa, nodes, visitor, later.child());
-                        stack.push(later);
-                    }
-                    farthest_first(&mut stack[bottom..]);
-                    current = nearest.child();
+                    current = nearest_of(
+                        #[inline(always)]
+                        |i| Waiting::new(node.child(i), near[i]),
+                        first,
+                        hit,
+                        &mut stack,
+                        #[inline(always)]
+                        |child| fetch_ahead(isa, nodes, visitor, child),
+                    );
                     continue;
                 }
             } else {
@@ -407,6 +389,41 @@ impl Tree {
         *stats += cost;
         t_max
     }
+}
+
+/// The nearest of two or more children, `first` and those whose bits are set in `others`. The others go on the stack, the nearest of them on top.
+#[inline(always)]
+fn nearest_of(
+    waiting: impl Fn(usize) -> Waiting,
+    first: usize,
+    mut others: u32,
+    stack: &mut Stack,
+    fetch: impl Fn(Child),
+) -> Child {
+    let a = waiting(first);
+    let b = waiting(others.trailing_zeros() as usize);
+    others &= others - 1;
+    let (mut nearest, other) = if b < a { (b, a) } else { (a, b) };
+    fetch(other.child());
+    let bottom = stack.len();
+    stack.push(other);
+    if others == 0 {
+        return nearest.child();
+    }
+    while others != 0 {
+        let next = waiting(others.trailing_zeros() as usize);
+        others &= others - 1;
+        let later;
+        (nearest, later) = if next < nearest {
+            (next, nearest)
+        } else {
+            (nearest, next)
+        };
+        fetch(later.child());
+        stack.push(later);
+    }
+    farthest_first(&mut stack[bottom..]);
+    nearest.child()
 }
 
 /// Prefetches the memory of a child that will be visited later. Without a branch on its kind, which would be hard to predict.

@@ -211,11 +211,7 @@ impl<'s> Shared<'_, 's> {
         t_max: [f64; PACKET],
         queries: &mut [Q; PACKET],
     ) -> [f64; PACKET] {
-        let part = if self.parts {
-            queries[0].part(group)
-        } else {
-            None
-        };
+        let part = queries[0].part(group).filter(|_| self.parts);
         let (accelerator, blocks, is_sheared) = match part {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),
@@ -233,12 +229,6 @@ impl<'s> Shared<'_, 's> {
             sheared = PacketShears::new(&shears, max_abs);
             culls.shears = sheared.as_ref();
         }
-        let mut from_prims = [NONE; PACKET];
-        for (prim, from) in from_prims.iter_mut().zip(asked.from) {
-            if let Some(origin) = from {
-                *prim = group.prim_of(origin.id - place.base);
-            }
-        }
         if blocks.has_spheres() {
             lines = PacketLines::new(asked.rays, max_abs);
             culls.lines = Some(&lines);
@@ -253,7 +243,7 @@ impl<'s> Shared<'_, 's> {
             blocks,
             asked,
             place,
-            from_prims,
+            from_prims: prims_of(group, asked, place),
             shears: &shears,
             culls,
             coordinates: None,
@@ -284,6 +274,18 @@ impl<'s> Shared<'_, 's> {
         *self.stats += stats;
         packet.t_max
     }
+}
+
+/// The primitives of a group that the rays come from.
+#[inline(always)]
+fn prims_of(group: &RenderGroup, asked: &Asked<'_>, place: Place) -> [u32; PACKET] {
+    let mut prims = [NONE; PACKET];
+    for (prim, from) in prims.iter_mut().zip(asked.from) {
+        if let Some(origin) = from {
+            *prim = group.prim_of(origin.id - place.base);
+        }
+    }
+    prims
 }
 
 /// The upper end of a range in the lanes of these rays.

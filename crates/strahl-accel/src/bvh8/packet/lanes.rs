@@ -6,7 +6,7 @@ use crate::bvh8::node::Node;
 use crate::bvh8::traverse::Slabs;
 use crate::cull::{CullBounds, CullClock, CullLanes, LONGEST_QUICK, MOST_RECIPROCAL, QUICK_SLACK};
 use crate::packet::{PACKET, Packet, lanes_of};
-use strahl_math::Interval;
+use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, Lanes16};
 
 /// All lanes, as bits.
@@ -73,35 +73,8 @@ impl Lanes {
         let first = packet.rays.get(packet.alive().trailing_zeros() as usize)?;
         let nothing = Lanes16([0.0; PACKET]);
         let (mut origins, mut directions) = ([nothing; 3], [nothing; 3]);
-        let plain = CullClock::UNUSED;
-        for lane in 0..PACKET {
-            // Lanes without a ray repeat a ray, so they don't change the hull.
-            let t_max = packet.t_max[lane];
-            let ray = match packet.rays.get(lane) {
-                Some(ray) if t_max > f64::NEG_INFINITY => {
-                    self.far.0[lane] = plain.t_max(t_max);
-                    ray
-                }
-                _ => first,
-            };
-            for axis in 0..3 {
-                origins[axis].0[lane] = ray.origin[axis] as f32;
-                directions[axis].0[lane] = ray.direction[axis] as f32;
-            }
-        }
-        let near = isa.splat_f32x16(bounds.near());
-        let (longest, shortest) = (
-            isa.splat_f32x16(LONGEST_QUICK),
-            isa.splat_f32x16(1.0 / LONGEST_QUICK),
-        );
-        let (mut usable, mut long) = (ALL, 0);
-        for axis in 0..3 {
-            let distance = isa.abs_f32x16(isa.load_f32x16(&origins[axis]));
-            let length = isa.abs_f32x16(isa.load_f32x16(&directions[axis]));
-            usable &= isa.le_f32x16(distance, near) & isa.le_f32x16(length, longest);
-            long |= isa.le_f32x16(shortest, length);
-        }
-        if usable & long != ALL {
+        self.narrow(packet, first, &mut origins, &mut directions);
+        if !are_ordinary(isa, &origins, &directions, bounds.near()) {
             return None;
         }
         let (zero, one) = (isa.splat_f32x16(0.0), isa.splat_f32x16(1.0));
@@ -110,7 +83,7 @@ impl Lanes {
         let slack = isa.splat_f32x16(QUICK_SLACK as f32);
         let relative_slack = isa.splat_f32x16(RELATIVE_SLACK as f32);
         let margin = isa.splat_f32x16(bounds.margin());
-        let t_min = plain.t_min(packet.min);
+        let t_min = CullClock::UNUSED.t_min(packet.min);
         let mut hull = Hull {
             t_min,
             ..Hull::NOTHING
@@ -146,6 +119,31 @@ impl Lanes {
             return Some(Filled::Alike(hull, octant));
         }
         Some(Filled::Mixed(Directions { down, shift }))
+    }
+
+    /// Sets the ends of the ranges of the rays, and their origins and directions by axis. Lanes without a ray repeat one, so that they don't change the hull.
+    #[inline(always)]
+    fn narrow(
+        &mut self,
+        packet: &Packet<'_>,
+        first: &Ray,
+        origins: &mut [Lanes16; 3],
+        directions: &mut [Lanes16; 3],
+    ) {
+        for lane in 0..PACKET {
+            let t_max = packet.t_max[lane];
+            let ray = match packet.rays.get(lane) {
+                Some(ray) if t_max > f64::NEG_INFINITY => {
+                    self.far.0[lane] = CullClock::UNUSED.t_max(t_max);
+                    ray
+                }
+                _ => first,
+            };
+            for axis in 0..3 {
+                origins[axis].0[lane] = ray.origin[axis] as f32;
+                directions[axis].0[lane] = ray.direction[axis] as f32;
+            }
+        }
     }
 
     /// By octant the hull of those of some rays that go in it, and these rays.
@@ -270,4 +268,27 @@ impl Lanes {
 #[inline(always)]
 fn of_lane(axes: &[Lanes16; 3], lane: usize) -> [f32; 4] {
     [axes[0].0[lane], axes[1].0[lane], axes[2].0[lane], 0.0]
+}
+
+/// Whether all rays start near the structure and need no scale.
+#[inline(always)]
+fn are_ordinary<I: Isa>(
+    isa: I,
+    origins: &[Lanes16; 3],
+    directions: &[Lanes16; 3],
+    near: f32,
+) -> bool {
+    let near = isa.splat_f32x16(near);
+    let (longest, shortest) = (
+        isa.splat_f32x16(LONGEST_QUICK),
+        isa.splat_f32x16(1.0 / LONGEST_QUICK),
+    );
+    let (mut usable, mut long) = (ALL, 0);
+    for axis in 0..3 {
+        let distance = isa.abs_f32x16(isa.load_f32x16(&origins[axis]));
+        let length = isa.abs_f32x16(isa.load_f32x16(&directions[axis]));
+        usable &= isa.le_f32x16(distance, near) & isa.le_f32x16(length, longest);
+        long |= isa.le_f32x16(shortest, length);
+    }
+    usable & long == ALL
 }
