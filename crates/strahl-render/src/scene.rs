@@ -124,7 +124,7 @@ pub struct SceneStats {
     pub nodes: usize,
     /// References from leaves to primitives.
     pub references: usize,
-    /// Bytes of primitives and meshes.
+    /// Bytes of primitives, meshes and spheres. What other shapes keep beside themselves isn't counted: operands of CSG, functions, control points.
     pub geometry_bytes: usize,
     /// Bytes of names and places of objects.
     pub object_bytes: usize,
