@@ -95,7 +95,7 @@ pub use strahl_sdl as sdl;
 pub use strahl_shade as shade;
 pub use strahl_simd::memory;
 pub use studio::studio;
-pub use subdivide::subdivide;
+pub use subdivide::{SubdivideOptions, subdivide};
 
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/src/rust.md")]

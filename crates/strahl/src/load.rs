@@ -1,12 +1,11 @@
 use crate::inputs::{Inputs, digest};
-use crate::subdivide::subdivide;
+use crate::subdivide::{SubdivideOptions, subdivide};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use strahl_formats::scene::{self, SceneFormat, read_decompressed};
-use strahl_geometry::SubdivisionScheme;
 use strahl_scene::{Diagnostic, Problems, Scene};
 use strahl_sdl::{FolderHost, Pinned, Recorder, Source, Stream, Texts, Writing, parse};
 
@@ -112,11 +111,11 @@ impl Loaded {
     }
 
     /// What a reader of [`strahl_formats`] has loaded, its meshes replaced by subdivision surfaces if that is asked for.
-    fn of_format(mut loaded: scene::Loaded, scheme: Option<SubdivisionScheme>) -> Self {
-        if let Some(scheme) = scheme
+    fn of_format(mut loaded: scene::Loaded, options: Option<SubdivideOptions>) -> Self {
+        if let Some(options) = options
             && let Some(mut scene) = loaded.scene.take()
         {
-            let problems = subdivide(&mut scene, scheme);
+            let problems = subdivide(&mut scene, options);
             loaded.scene = problems.is_empty().then_some(scene);
             loaded.diagnostics.extend(problems);
         }
@@ -150,7 +149,7 @@ pub struct LoadOptions {
     /// The value of `now`, in days since the beginning of 2000; `None` is the time of loading.
     pub now: Option<f64>,
     /// Replaces the meshes of a file that is not in POV-Ray's language by the subdivision surfaces that they control.
-    pub subdivide: Option<SubdivisionScheme>,
+    pub subdivide: Option<SubdivideOptions>,
     /// Whether to return [`Loaded::inputs`], which takes time to compute.
     pub record: bool,
     /// Receives the output of `#debug` and the like.

@@ -1,10 +1,67 @@
 //! Meshes of files as subdivision surfaces.
 
 use std::collections::HashMap;
+use std::str::FromStr;
 use std::sync::Arc;
 use strahl_geometry::{Shape, Subdivision, SubdivisionData, SubdivisionScheme, TriangleMesh};
 use strahl_math::DVec3;
 use strahl_scene::{Children, Diagnostic, Object, ObjectKind, Scene};
+
+/// The sharpness of edges that stay sharp for ever.
+const SHARP: f64 = 10.0;
+
+/// How the meshes of a file are subdivided.
+///
+/// As a text, such as `loop` or `catmull-clark:crease=30`: the scheme, and the angle of creases in degrees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SubdivideOptions {
+    /// The scheme.
+    pub scheme: SubdivisionScheme,
+    /// Edges are sharp where the normals of their two faces differ by more than this, in degrees from 0 to 180; `None` makes no edge
+    /// sharp but those of one face only, which always are.
+    pub crease_angle: Option<f64>,
+}
+
+impl From<SubdivisionScheme> for SubdivideOptions {
+    fn from(scheme: SubdivisionScheme) -> Self {
+        Self {
+            scheme,
+            crease_angle: None,
+        }
+    }
+}
+
+impl FromStr for SubdivideOptions {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let (scheme, option) = match s.split_once(':') {
+            None => (s, None),
+            Some((scheme, option)) => (scheme, Some(option)),
+        };
+        let scheme = match scheme {
+            "catmull-clark" => SubdivisionScheme::CatmullClark,
+            "loop" => SubdivisionScheme::Loop,
+            _ => return Err("the schemes are `catmull-clark` and `loop`".to_owned()),
+        };
+        let Some(option) = option else {
+            return Ok(scheme.into());
+        };
+        let value = option.strip_prefix("crease=").ok_or_else(|| {
+            format!("`{option}` is not known: edges are made sharp with `crease=DEGREES`, such as `crease=30`")
+        })?;
+        let angle = value
+            .parse()
+            .ok()
+            .filter(|angle| (0.0..=180.0).contains(angle));
+        let angle =
+            angle.ok_or_else(|| format!("`{value}` is not an angle from 0 to 180 degrees"))?;
+        Ok(Self {
+            scheme,
+            crease_angle: Some(angle),
+        })
+    }
+}
 
 /// Replaces every mesh of a scene by the subdivision surface that it controls; returns what is wrong with those for which that is not
 /// possible. A scene without meshes is an error, too.
@@ -12,11 +69,11 @@ use strahl_scene::{Children, Diagnostic, Object, ObjectKind, Scene};
 /// Vertices at the same place are one, whatever their normals and texture coordinates. For Catmull and Clark's scheme, triangles that were
 /// one polygon in the file are one face again. Each mesh is subdivided by itself: where two of them meet (a file has one for
 /// each material) both end in the same smooth curve.
-pub fn subdivide(scene: &mut Scene, scheme: SubdivisionScheme) -> Vec<Diagnostic> {
+pub fn subdivide(scene: &mut Scene, options: SubdivideOptions) -> Vec<Diagnostic> {
     let mut problems = vec![];
-    let mut count = all(&mut scene.objects, scheme, &mut problems);
+    let mut count = all(&mut scene.objects, options, &mut problems);
     for group in &mut scene.groups {
-        count += all(&mut group.objects, scheme, &mut problems);
+        count += all(&mut group.objects, options, &mut problems);
     }
     if count == 0 {
         let problem = Diagnostic::error("the scene has no mesh that could be subdivided");
@@ -26,13 +83,13 @@ pub fn subdivide(scene: &mut Scene, scheme: SubdivisionScheme) -> Vec<Diagnostic
 }
 
 /// Returns how many meshes there were.
-fn all(objects: &mut Children, scheme: SubdivisionScheme, problems: &mut Vec<Diagnostic>) -> usize {
+fn all(objects: &mut Children, options: SubdivideOptions, problems: &mut Vec<Diagnostic>) -> usize {
     let mut count = 0;
     for object in &mut objects.0 {
         let found = match &mut object.kind {
-            ObjectKind::Shape(Shape::TriangleMesh(mesh)) => surface(mesh, scheme),
+            ObjectKind::Shape(Shape::TriangleMesh(mesh)) => surface(mesh, options),
             ObjectKind::Csg { children, .. } => {
-                count += all(children, scheme, problems);
+                count += all(children, options, problems);
                 continue;
             }
             _ => continue,
@@ -51,8 +108,11 @@ fn problem(object: &Object, why: &str) -> Diagnostic {
     Diagnostic::error(format!("`{name}` cannot be subdivided: {why}")).at(object.span)
 }
 
-fn surface(mesh: &Arc<TriangleMesh>, scheme: SubdivisionScheme) -> Result<Shape, String> {
-    let data = control_mesh(mesh, scheme)?;
+fn surface(mesh: &Arc<TriangleMesh>, options: SubdivideOptions) -> Result<Shape, String> {
+    let mut data = control_mesh(mesh, options.scheme)?;
+    if let Some(angle) = options.crease_angle {
+        data.creases = creases(&data, angle);
+    }
     let surface = Subdivision::try_new(&data).map_err(|error| error.to_string())?;
     Ok(surface.into())
 }
@@ -111,6 +171,36 @@ fn control_mesh(mesh: &TriangleMesh, scheme: SubdivisionScheme) -> Result<Subdiv
     Ok(data)
 }
 
+/// The edges at which the normals of two faces differ by more than an angle in degrees.
+fn creases(data: &SubdivisionData, angle: f64) -> Vec<([u32; 2], f64)> {
+    let least = angle.to_radians().cos();
+    let mut creases = vec![];
+    // The normal of the face that came first.
+    let mut known: HashMap<[u32; 2], DVec3> = HashMap::new();
+    let mut corners = data.indices.as_slice();
+    for size in &data.sizes {
+        let (face, rest) = corners.split_at(*size as usize);
+        corners = rest;
+        let normal = normal(face.iter().map(|v| data.points[*v as usize]));
+        for (k, a) in face.iter().enumerate() {
+            let b = face[(k + 1) % face.len()];
+            let edge = [*a.min(&b), *a.max(&b)];
+            match known.insert(edge, normal) {
+                Some(other) if normal.dot(other) < least => creases.push((edge, SHARP)),
+                _ => {}
+            }
+        }
+    }
+    creases
+}
+
+/// The mean normal of a polygon (M. Newell), of length 1; 0 if it has no area.
+fn normal(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
+    let next = corners.clone().skip(1).chain(corners.clone().take(1));
+    let area: DVec3 = corners.zip(next).map(|(a, b)| a.cross(b)).sum();
+    area.normalize_or_zero()
+}
+
 /// The corners of the polygon that triangles make, in their order.
 fn outline(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
     if let [triangle] = triangles {
@@ -152,7 +242,7 @@ mod tests {
 
     fn loaded(text: &str, format: &str, scheme: SubdivisionScheme) -> crate::Loaded {
         let options = LoadOptions {
-            subdivide: Some(scheme),
+            subdivide: Some(scheme.into()),
             ..LoadOptions::default()
         };
         let format: Format = format.parse().expect("a format");
@@ -233,6 +323,59 @@ mod tests {
             "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
             "scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}]}}"#
         )
+    }
+
+    fn creased(text: &str, format: &str, options: &str) -> SubdivisionData {
+        let options = LoadOptions {
+            subdivide: Some(options.parse().expect("options")),
+            ..LoadOptions::default()
+        };
+        let format: Format = format.parse().expect("a format");
+        let scene = load_bytes(text.into(), "file", format, options).scene;
+        match &scene.expect("a scene").objects.0[0].kind {
+            ObjectKind::Shape(Shape::Subdivision(surface)) => surface.data().clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// The edges of a cube, but not the diagonals of its sides, which are at 90 degrees. A cube that is sharp everywhere is a cube.
+    #[test]
+    fn edges_above_the_angle_of_creases_are_sharp() {
+        for scheme in ["catmull-clark", "loop"] {
+            for (text, format) in [(CUBE, "obj"), (PLY, "ply"), (&gltf_cube(), "gltf")] {
+                let cube = creased(text, format, &format!("{scheme}:crease=89"));
+                assert_eq!(cube.creases.len(), 12, "{scheme} {format}");
+                let surface = Subdivision::try_new(&cube).expect("a surface");
+                let solid = surface.as_solid().expect("a solid");
+                assert!(solid.contains(DVec3::splat(0.999)), "{scheme} {format}");
+                assert!(!solid.contains(DVec3::splat(1.001)), "{scheme} {format}");
+                let round = creased(text, format, &format!("{scheme}:crease=91"));
+                assert!(round.creases.is_empty(), "{scheme} {format}");
+            }
+        }
+        // A roof over two triangles, whose normals are at 60 degrees.
+        let roof = "v 0 0 0\nv 1 0 0\nv 0.5 1 0\nv 0.5 -0.5 0.8660254\nf 1 2 3\nf 2 1 4\n";
+        assert_eq!(creased(roof, "obj", "loop:crease=59").creases.len(), 1);
+        assert_eq!(creased(roof, "obj", "loop:crease=61").creases.len(), 0);
+    }
+
+    #[test]
+    fn options_are_read() {
+        let read = |s: &str| s.parse::<SubdivideOptions>();
+        let angle = |s: &str| read(s).map(|options| options.crease_angle);
+        assert_eq!(read("loop"), Ok(SubdivisionScheme::Loop.into()));
+        assert_eq!(angle("catmull-clark:crease=30"), Ok(Some(30.0)));
+        assert_eq!(angle("loop:crease=0"), Ok(Some(0.0)));
+        for bad in [
+            "loop:crease=181",
+            "loop:crease=-1",
+            "loop:crease=nan",
+            "loop:crease=",
+            "loop:",
+        ] {
+            assert!(read(bad).is_err(), "{bad}");
+        }
+        assert!(read("loop:creases=3").is_err_and(|e| e.contains("`crease=DEGREES`")));
     }
 
     /// Files in glTF know triangles only; those of a cube's sides meet, and it has an inside.

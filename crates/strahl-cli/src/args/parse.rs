@@ -1,7 +1,6 @@
 //! Values of arguments that have no type of their own.
 
 use strahl::formats::image::{BitDepth, ImageFormat};
-use strahl::geometry::SubdivisionScheme;
 use strahl::sdl::{Limits, Word};
 use strahl::tracing::Region;
 
@@ -66,14 +65,6 @@ pub(super) fn parse_declaration(s: &str) -> Result<(String, f64), String> {
     number.map(|v| (name.to_owned(), v)).ok_or_else(|| {
         format!("`{value}` is not a number: only numbers can be declared here, such as {name}=2.5")
     })
-}
-
-pub(super) fn parse_scheme(s: &str) -> Result<SubdivisionScheme, String> {
-    match s {
-        "catmull-clark" => Ok(SubdivisionScheme::CatmullClark),
-        "loop" => Ok(SubdivisionScheme::Loop),
-        _ => Err("the schemes are `catmull-clark` and `loop`".to_owned()),
-    }
 }
 
 pub(super) fn parse_limit(s: &str) -> Result<(String, u64), String> {

@@ -1,13 +1,11 @@
 //! What all commands that read a scene take.
 
-use super::parse::{
-    parse_declaration, parse_limit, parse_scheme, parse_size, parse_version, parse_weight,
-};
+use super::parse::{parse_declaration, parse_limit, parse_size, parse_version, parse_weight};
 use clap::Args;
 use std::path::PathBuf;
 use strahl::Format;
+use strahl::SubdivideOptions;
 use strahl::accel::{AcceleratorKind, Bvh8Parameters, Level, Parameters, UnknownLevel};
-use strahl::geometry::SubdivisionScheme;
 use strahl::shade::{Quality, ShadingModel};
 use strahl::tracing::Sampling;
 
@@ -46,9 +44,10 @@ pub(crate) struct PovArgs {
     /// times
     #[arg(long, value_name = "NAME=N", value_parser = parse_limit)]
     pub(crate) limit: Vec<(String, u64)>,
-    /// Show the subdivision surfaces that the meshes of an OBJ, PLY, STL or glTF file control, met at their limit
-    #[arg(long, value_name = "SCHEME", value_parser = parse_scheme, help_heading = "Meshes")]
-    pub(crate) subdivide: Option<SubdivisionScheme>,
+    /// Show the subdivision surfaces that the meshes of an OBJ, PLY, STL or glTF file control, met at their limit: `catmull-clark` or
+    /// `loop`; with `:crease=DEGREES` edges are sharp where faces meet at more than this angle
+    #[arg(long, value_name = "SCHEME", help_heading = "Meshes")]
+    pub(crate) subdivide: Option<SubdivideOptions>,
     /// Language version of scenes without `#version`, such as 3.7
     #[arg(long, value_name = "VERSION", value_parser = parse_version)]
     pub(crate) language_version: Option<f64>,

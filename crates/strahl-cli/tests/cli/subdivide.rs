@@ -139,6 +139,13 @@ fn what_cannot_be_subdivided_is_an_error() {
         2,
         &[schemes],
     );
+    let angle = "`200` is not an angle from 0 to 180 degrees";
+    fails(
+        folder.path(),
+        &args("thing.obj", "loop:crease=200"),
+        2,
+        &[angle],
+    );
     let language = ["`scene.pov` is in POV-Ray's language", "`subdivision { }`"];
     fails(folder.path(), &args("scene.pov", "loop"), 1, &language);
 }
