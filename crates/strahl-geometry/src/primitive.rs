@@ -440,4 +440,14 @@ pub enum GeometryError {
         /// The reason, in words.
         why: String,
     },
+    /// A part of an object that should enclose a volume leaves it open.
+    #[error("{what} is not closed: {why}")]
+    NotClosedAt {
+        /// The object.
+        what: &'static str,
+        /// The number of the part, counted from 0.
+        index: u64,
+        /// The reason, in words.
+        why: String,
+    },
 }

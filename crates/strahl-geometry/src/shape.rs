@@ -171,6 +171,8 @@ shapes! {
     BicubicPatch(Arc<BicubicPatch>),
     /// A NURBS surface, trimmed or whole.
     Nurbs(Arc<Nurbs>),
+    /// The volume within trimmed NURBS surfaces.
+    NurbsBrep(Arc<NurbsBrep>),
     /// A subdivision surface.
     Subdivision(Arc<Subdivision>),
     /// A slice of a Julia set in four dimensions.

@@ -46,7 +46,7 @@ impl ElementTree {
     }
 
     /// Shows the elements along a ray to the visitor.
-    fn walk<V: Visitor>(&self, ray: &Ray, range: Interval, visitor: &mut V) {
+    pub(super) fn walk<V: Visitor>(&self, ray: &Ray, range: Interval, visitor: &mut V) {
         let local = Ray::new(ray.origin - self.anchor, ray.direction);
         self.tree
             .traverse(&local, range, visitor, &mut TraversalStats::default());

@@ -24,5 +24,5 @@ mod tree;
 mod winding;
 
 pub use bicubic::BicubicPatch;
-pub use nurbs::{Nurbs, NurbsCurve, NurbsData, TrimLoop};
+pub use nurbs::{Nurbs, NurbsBrep, NurbsCurve, NurbsData, TrimLoop};
 pub use subdivision::{Subdivision, SubdivisionData, SubdivisionScheme};

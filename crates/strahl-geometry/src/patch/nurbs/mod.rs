@@ -1,5 +1,6 @@
 //! NURBS surfaces, trimmed or whole.
 
+mod brep;
 mod closed;
 mod data;
 mod part;
@@ -21,6 +22,7 @@ use std::sync::Arc;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 use trim::Region;
 
+pub use brep::NurbsBrep;
 pub use data::NurbsData;
 pub use trim::{NurbsCurve, TrimLoop};
 

@@ -3,6 +3,7 @@
 use crate::patch::bezier::{Bezier, is_on_a_line};
 use crate::patch::frame::Frame;
 use crate::patch::hull::{points, project};
+use crate::patch::net::Curve;
 use crate::patch::newton::Candidate;
 use crate::patch::search::Keep;
 use std::fmt::Debug;
@@ -19,6 +20,9 @@ pub(super) trait Patch: Debug + Send + Sync {
     fn is_on_a_line(&self) -> bool;
     /// All hits of the line.
     fn all(&self, frame: &Frame, keep: Keep<'_>) -> Vec<Candidate>;
+    fn copy(&self) -> Box<dyn Patch>;
+    /// The patch over a larger rectangle, beyond both ends of u and of v by these parts of it; `None` if it has no point there.
+    fn extended(&self, by: [[f64; 2]; 2]) -> Option<Box<dyn Patch>>;
     /// The bits of the control points of a side, counter-clockwise from `v = 0` on.
     fn border(&self, side: usize) -> Vec<[u64; 4]>;
 }
@@ -57,6 +61,29 @@ impl<const K: usize> Patch for Bezier<K> {
         self.all(frame, keep)
     }
 
+    fn copy(&self) -> Box<dyn Patch> {
+        Box::new(Self::new(self.net))
+    }
+
+    fn extended(&self, by: [[f64; 2]; 2]) -> Option<Box<dyn Patch>> {
+        let mut net = self.net;
+        net.rows = net.rows.map(|row| extended(row, by[0]));
+        for i in 0..K {
+            let column = extended(net.column(i), by[1]);
+            for (row, p) in net.rows.iter_mut().zip(column) {
+                row[i] = p;
+            }
+        }
+        if net.points().any(|p| !(p[3] > 0.0)) {
+            return None;
+        }
+        if self.net.points().all(|p| p[3] == 1.0) {
+            // Rounding must not make it rational.
+            net = net.map(|[x, y, z, _]| [*x, *y, *z, 1.0]);
+        }
+        Some(Box::new(Self::new(net)))
+    }
+
     fn border(&self, side: usize) -> Vec<[u64; 4]> {
         let curve = match side {
             0 => self.net.rows[0],
@@ -78,6 +105,32 @@ impl<const K: usize> Patch for Bezier<K> {
     }
 }
 
+/// A curve that begins and ends these parts of it further out. An end that stays keeps its bits.
+fn extended<const K: usize>(curve: Curve<4, K>, [before, after]: [f64; 2]) -> Curve<4, K> {
+    let mut longer = curve;
+    if before > 0.0 {
+        longer.reverse();
+        longer = continued(&longer, 1.0 + before);
+        longer.reverse();
+    }
+    if after > 0.0 {
+        longer = continued(&longer, 1.0 + after / (1.0 + before));
+    }
+    longer
+}
+
+/// The curve from its begin to a parameter beyond its end (de Casteljau).
+fn continued<const K: usize>(curve: &Curve<4, K>, at: f64) -> Curve<4, K> {
+    let (mut row, mut out) = (*curve, *curve);
+    for step in 1..K {
+        for i in 0..K - step {
+            row[i] = std::array::from_fn(|k| row[i][k] + (row[i + 1][k] - row[i][k]) * at);
+        }
+        out[step] = row[0];
+    }
+    out
+}
+
 /// A patch over a rectangle of the surface's parameters.
 #[derive(Debug)]
 pub(super) struct Part {
@@ -89,6 +142,14 @@ pub(super) struct Part {
 }
 
 impl Part {
+    /// The same part, whose pieces are made anew.
+    pub(super) fn copy(&self) -> Self {
+        Self {
+            patch: self.patch.copy(),
+            ..*self
+        }
+    }
+
     /// The parameters of the surface for those of the patch.
     pub(super) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let along = |k: usize, x: f64| self.from[k] * (1.0 - x) + self.to[k] * x;

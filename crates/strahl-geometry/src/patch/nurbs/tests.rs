@@ -21,7 +21,7 @@ fn hills(degree: [u32; 2], columns: usize, rows: usize, seed: u64) -> NurbsData 
 }
 
 /// A full circle of four quarters, as a curve of degree 2: places and weights.
-fn circle() -> Vec<[f64; 3]> {
+pub(super) fn circle() -> Vec<[f64; 3]> {
     [
         (1, 0),
         (1, 1),
@@ -40,10 +40,10 @@ fn circle() -> Vec<[f64; 3]> {
     .to_vec()
 }
 
-const QUARTERS: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 4.0];
+pub(super) const QUARTERS: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 4.0];
 
 /// The surface that a profile `(radius, height, weight)` of degree 2 sweeps about the y axis.
-fn revolved(profile: &[[f64; 3]], knots: &[f64]) -> NurbsData {
+pub(super) fn revolved(profile: &[[f64; 3]], knots: &[f64]) -> NurbsData {
     let (mut points, mut weights) = (vec![], vec![]);
     for [r, y, w] in profile {
         for [c, s, v] in circle() {
@@ -60,7 +60,7 @@ fn revolved(profile: &[[f64; 3]], knots: &[f64]) -> NurbsData {
 }
 
 /// The unit sphere, collapsed at both poles.
-fn sphere() -> NurbsData {
+pub(super) fn sphere() -> NurbsData {
     let profile = circle()[6..]
         .iter()
         .chain(&circle()[1..3])
@@ -70,7 +70,7 @@ fn sphere() -> NurbsData {
 }
 
 /// A torus of radii 1 and 0.4.
-fn torus() -> NurbsData {
+pub(super) fn torus() -> NurbsData {
     let profile: Vec<_> = circle()
         .iter()
         .map(|[x, y, w]| [1.0 + 0.4 * x, 0.4 * y, *w])
@@ -78,12 +78,12 @@ fn torus() -> NurbsData {
     revolved(&profile, &QUARTERS)
 }
 
-fn nurbs(data: &NurbsData) -> Nurbs {
+pub(super) fn nurbs(data: &NurbsData) -> Nurbs {
     Nurbs::try_new(data).unwrap()
 }
 
 /// A circle in the plane of parameters.
-fn ring(center: DVec2, radius: f64, is_hole: bool) -> TrimLoop {
+pub(super) fn ring(center: DVec2, radius: f64, is_hole: bool) -> TrimLoop {
     let curve = NurbsCurve {
         degree: 2,
         knots: QUARTERS.to_vec(),
@@ -124,7 +124,7 @@ crate::primitive_tests!(trimmed_sphere, || {
 });
 
 /// All hits of a line, one after the other.
-fn hits(shape: &dyn Primitive, ray: &Ray) -> Vec<PrimHit> {
+pub(super) fn hits(shape: &dyn Primitive, ray: &Ray) -> Vec<PrimHit> {
     let scratch = &mut Scratch::default();
     let (mut range, mut list) = (Interval::LINE, vec![]);
     while let Some(hit) = shape.closest_hit(ray, range, None, scratch) {

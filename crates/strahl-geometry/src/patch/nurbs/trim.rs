@@ -120,7 +120,7 @@ const DEPTH: u32 = 64;
 const MOST_ARCS: usize = 1 << 22;
 
 /// A point of an arc: two coordinates and a weight.
-type Weighted = [f64; 3];
+pub(super) type Weighted = [f64; 3];
 
 /// The part of the unit square that loops cut out. Its curves are in units of the surface: parameters from 0 to 1.
 #[derive(Debug)]
@@ -172,6 +172,11 @@ impl Region {
     fn arc(&self, number: usize) -> &[Weighted] {
         let end = |k: usize| self.arcs.get(k).map_or(0, |k| *k as usize);
         self.points.get(end(number)..end(number + 1)).unwrap_or(&[])
+    }
+
+    /// All arcs: control points, which are places and weights.
+    pub(super) fn arcs(&self) -> impl Iterator<Item = &[Weighted]> {
+        (0..self.arcs.len() - 1).map(|k| self.arc(k))
     }
 
     /// The boxes of all arcs.
