@@ -27,7 +27,7 @@ from strahl._lights import (
 from strahl._load import load, parse
 from strahl._looks import Background, Material
 from strahl._objects import difference, intersection, light_group, merge, Object, union
-from strahl._patches import bicubic_patch, nurbs, NurbsCurve, subdivision
+from strahl._patches import bicubic_patch, brep, nurbs, NurbsCurve, subdivision
 from strahl._patterns import Pattern
 from strahl._progress import Progress
 from strahl._rays import Hits
@@ -90,6 +90,7 @@ __all__ = [
     "bicubic_patch",
     "blob",
     "box",
+    "brep",
     "cone",
     "cylinder",
     "difference",

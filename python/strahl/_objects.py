@@ -131,7 +131,7 @@ def light_group(*things: Object | Light | Iterable[Object | Light], global_light
     from strahl._lights import Light
 
     parts: list[_strahl.Object | tuple[_strahl.Light, Place]] = []
-    for thing in _flat(things):
+    for thing in flat(things):
         if isinstance(thing, Light):
             parts.append((thing._core, thing._place))
         elif isinstance(thing, Object):
@@ -142,7 +142,7 @@ def light_group(*things: Object | Light | Iterable[Object | Light], global_light
     return with_look(_strahl.combined(operation, parts, caller()), None, name)
 
 
-def _flat(things: Iterable[Any]) -> Iterator[Any]:
+def flat(things: Iterable[Any]) -> Iterator[Any]:
     for thing in things:
         if isinstance(thing, Iterable) and not isinstance(thing, (str, bytes)):
             yield from thing
@@ -161,19 +161,19 @@ def with_look(core: _strahl.Object, material: Look | None, name: str | None) -> 
 
 def union(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """All objects together; surfaces inside of other objects are kept."""
-    return with_look(_combined("union", list(_flat(objects)))._core, material, name)
+    return with_look(_combined("union", list(flat(objects)))._core, material, name)
 
 
 def merge(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """All solids together as one, without surfaces inside: for glass."""
-    return with_look(_combined("merge", list(_flat(objects)))._core, material, name)
+    return with_look(_combined("merge", list(flat(objects)))._core, material, name)
 
 
 def intersection(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """What is inside of all solids."""
-    return with_look(_combined("intersection", list(_flat(objects)))._core, material, name)
+    return with_look(_combined("intersection", list(flat(objects)))._core, material, name)
 
 
 def difference(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """The first solid without the others."""
-    return with_look(_combined("difference", list(_flat(objects)))._core, material, name)
+    return with_look(_combined("difference", list(flat(objects)))._core, material, name)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from strahl import _strahl
 from strahl._convert import caller, finite_rows, integer, real
 from strahl._looks import Look
-from strahl._objects import Object, with_look
+from strahl._objects import Object, flat, with_look
 
 
 def bicubic_patch(
@@ -92,6 +92,17 @@ def nurbs(
         caller(),
     )
     return with_look(core, material, name)
+
+
+def brep(*faces: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
+    """The solid within `nurbs` surfaces that close a volume together, trimmed or whole: a boundary representation.
+
+    ``faces`` are surfaces and lists of them, also moved ones and unions, in any order and turned either way; their materials do not count. Each border is that of
+    another face, too, or of the same face elsewhere (the seam of a tube), within a ten-thousandth of the diagonal of the whole; such gaps let no ray through.
+
+    Raises ValueError if the faces leave a gap, which tells where, or cross each other.
+    """
+    return with_look(_strahl.brep([face._core for face in flat(faces)], caller()), material, name)
 
 
 def subdivision(

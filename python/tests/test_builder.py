@@ -487,7 +487,7 @@ SAME: dict[tuple[str, str], dict[str, Any]] = {
         "Torus": strahl.torus, "Ovus": strahl.ovus, "Lemon": strahl.lemon, "Quadric": strahl.quadric, "Prism": strahl.prism, "Glyph": strahl.text,
         "Lathe": strahl.lathe, "Sor": strahl.sor, "SphereSweep": strahl.sphere_sweep, "Polynomial": strahl.polynomial, "Blob": strahl.blob,
         "Superellipsoid": strahl.superellipsoid, "Isosurface": strahl.implicit, "GridIsosurface": strahl.isosurface, "HeightField": strahl.height_field,
-        "Parametric": strahl.parametric, "BicubicPatch": strahl.bicubic_patch, "Nurbs": strahl.nurbs, "Subdivision": strahl.subdivision, "Julia": strahl.julia,
+        "Parametric": strahl.parametric, "BicubicPatch": strahl.bicubic_patch, "Nurbs": strahl.nurbs, "NurbsBrep": strahl.brep, "Subdivision": strahl.subdivision, "Julia": strahl.julia,
         "Mandelbulb": strahl.mandelbulb, "Menger": strahl.menger, "Terrain": strahl.terrain, "Triangle": strahl.triangle, "SmoothTriangle": strahl.mesh,
         "Polygon": strahl.polygon, "TriangleMesh": strahl.mesh, "Brep": strahl.mesh, "Csg": strahl.difference, "Bounded": Object.bounded_by,
         "Custom": None,  # a shape of a Rust program

@@ -451,3 +451,39 @@ def test_visibility() -> None:
     scene = strahl.Scene(ball.visible_to(camera=False), ball.translate((5, 0, 0)).visible_to(shadows=False))
     assert scene.intersect([[0, 0, 9], [5, 0, 9]], (0, 0, -1)).hit.tolist() == [False, True]
     assert scene.occluded([[0, 0, 9], [5, 0, 9]], (0, 0, -1)).tolist() == [True, False]
+
+
+def _can(radius: float = 1) -> list[strahl.Object]:
+    """A tube about z from -1 to 1 of radius 1, and its lids of this radius."""
+    ring, ring_weights, ring_knots = _ring()
+    tube = np.empty((2, 9, 3))
+    tube[..., :2] = ring
+    tube[..., 2] = [[-1], [1]]
+    side = strahl.nurbs(tube, (2, 1), weights=np.stack([ring_weights] * 2), knots=(ring_knots, [0, 0, 1, 1]))
+    border = strahl.NurbsCurve(radius * ring, 2, weights=ring_weights, knots=ring_knots)
+    square = np.array([[[-2, -2, 0], [2, -2, 0]], [[-2, 2, 0], [2, 2, 0]]])
+    lid = strahl.nurbs(square, 1, knots=([-2, -2, 2, 2], [-2, -2, 2, 2]), trim=[border])
+    return [side, lid.translate((0, 0, 1)), strahl.union(lid).translate((0, 0, -1))]
+
+
+def test_surfaces_that_close_a_volume_are_a_solid() -> None:
+    rng = np.random.default_rng(16)
+    points = rng.uniform(-1.2, 1.2, (4000, 3))
+    distance = np.maximum(np.hypot(points[:, 0], points[:, 1]), abs(points[:, 2]))
+    for radius in (1, 1 - 1e-6):
+        solid = strahl.brep(_can(radius), name="can", material="#aaccee")
+        assert solid.kind == "nurbs_brep"
+        expected = np.where(distance < 1, 0, -1)
+        assert np.array_equal(strahl.Scene(solid).inside(points), expected)
+    cut = strahl.Scene(strahl.brep(*_can()) - strahl.sphere((0, 0, 1), 0.5))
+    hits = cut.intersect([[0, 0, 5], [0.7, 0, 5], [5, 0, 0.9]], [[0, 0, -1], [0, 0, -1], [-1, 0, 0]])
+    np.testing.assert_allclose(hits.t, [4.5, 4, 4], atol=1e-9)
+    np.testing.assert_allclose(hits.normal, [[0, 0, 1], [0, 0, 1], [1, 0, 0]], atol=1e-9)
+    for wrong, message in (
+        (lambda: strahl.brep(), "no faces"),
+        (lambda: strahl.brep(_can()[:2]), "face 0 .* has a border at <.*> but no other face"),
+        (lambda: strahl.brep(_can(1.01)), "not closed"),
+        (lambda: strahl.brep(strahl.sphere()), "must be a nurbs surface, not sphere"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            wrong()

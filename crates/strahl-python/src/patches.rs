@@ -8,14 +8,17 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use strahl::geometry::{
-    Nurbs, NurbsCurve, NurbsData, Subdivision, SubdivisionData, SubdivisionScheme, TrimLoop,
+    Nurbs, NurbsBrep, NurbsCurve, NurbsData, Subdivision, SubdivisionData, SubdivisionScheme,
+    TrimLoop,
 };
 use strahl::prelude::{BicubicPatch, DVec3};
+use strahl::scene::nurbs_faces;
 
 /// Adds all functions to the module.
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(bicubic_patch, module)?)?;
     module.add_function(wrap_pyfunction!(nurbs, module)?)?;
+    module.add_function(wrap_pyfunction!(brep, module)?)?;
     module.add_function(wrap_pyfunction!(subdivision, module)?)
 }
 
@@ -85,6 +88,20 @@ fn nurbs(
     let loops = loops.into_iter().map(trim).collect::<PyResult<Vec<_>>>()?;
     let surface = Nurbs::try_trimmed(&data, &loops).map_err(errors::value)?;
     object(Arc::new(surface), place)
+}
+
+/// The solid within NURBS surfaces, also transformed ones and unions of them.
+#[pyfunction]
+fn brep(faces: Vec<Py<Object>>, place: Place) -> PyResult<Object> {
+    let mut surfaces = vec![];
+    for face in &faces {
+        let own = nurbs_faces(&face.get().0.object);
+        surfaces.extend(own.map_err(|kind| {
+            errors::value(format!("a face must be a nurbs surface, not {kind}"))
+        })?);
+    }
+    let solid = NurbsBrep::try_new(&surfaces).map_err(errors::value)?;
+    object(Arc::new(solid), place)
 }
 
 /// The control mesh of a subdivision surface: a dictionary that the Python half makes.

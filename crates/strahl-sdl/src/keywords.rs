@@ -146,6 +146,7 @@ words! {
     Bozo "bozo" Item,
     Break "break" Directive,
     Breakpoint "breakpoint" Item,
+    Brep "brep" Object new,
     Brick "brick" Item,
     BrickSize "brick_size" Item,
     Brightness "brightness" Item,
@@ -639,7 +640,7 @@ mod tests {
             assert_eq!((word.text(), word.kind()), (*text, *kind));
         }
         assert_eq!(Word::from_number(Word::ALL.len() as u64), None);
-        // 523 words of the language, 5 of extensions, and 9 names of frame and picture.
-        assert_eq!(Word::ALL.len(), 537);
+        // 523 words of the language, 6 of extensions, and 9 names of frame and picture.
+        assert_eq!(Word::ALL.len(), 538);
     }
 }

@@ -111,9 +111,9 @@ pub mod prelude {
     pub use strahl_formats::image::WriteOptions;
     pub use strahl_geometry::{
         BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, Mandelbulb, Menger, MeshData,
-        Nurbs, NurbsCurve, NurbsData, Ovus, Plane, Polygon, Quadric, Shape, Sphere, Subdivision,
-        SubdivisionData, SubdivisionScheme, Terrain, TerrainDetail, TerrainKind, TerrainOptions,
-        Torus, Triangle, TriangleMesh, TrimLoop,
+        Nurbs, NurbsBrep, NurbsCurve, NurbsData, Ovus, Plane, Polygon, Quadric, Shape, Sphere,
+        Subdivision, SubdivisionData, SubdivisionScheme, Terrain, TerrainDetail, TerrainKind,
+        TerrainOptions, Torus, Triangle, TriangleMesh, TrimLoop,
     };
     pub use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
     pub use strahl_render::{

@@ -6,6 +6,7 @@ mod bicubic_patch;
 mod blob;
 mod bounds;
 mod boxes;
+mod brep;
 mod cone;
 mod csg;
 mod cylinder;
@@ -58,6 +59,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::BicubicPatch, bicubic_patch::bicubic_patch),
     (Word::Blob, blob::blob),
     (Word::Box, boxes::cuboid),
+    (Word::Brep, brep::brep),
     (Word::Isosurface, isosurface::isosurface),
     (Word::JuliaFractal, julia_fractal::julia_fractal),
     (Word::Lathe, lathe::lathe),

@@ -118,12 +118,8 @@ pub(super) fn tolerance(faces: &[Face], size: f64) -> Result<f64, GeometryError>
             });
             let distances: Vec<f64> = near.iter().map(|(_, distance)| *distance).collect();
             let Some(gap) = distances.iter().copied().reduce(f64::min) else {
-                return Err(open(
-                    piece.face,
-                    point,
-                    "no other face has that border",
-                    limit,
-                ));
+                let why = format!("no other face has that border within {limit:.3e}");
+                return Err(open(piece.face, point, &why));
             };
             widest = widest.max(gap);
             samples.push(Sample {
@@ -134,25 +130,28 @@ pub(super) fn tolerance(faces: &[Face], size: f64) -> Result<f64, GeometryError>
     }
     let tolerance = (2.0 * widest).max(ROUNDING * size);
     for all in samples.chunk_by(|a, b| a.piece == b.piece) {
-        let others = |sample: &Sample| sample.distances.iter().filter(|d| **d <= tolerance).count();
-        let crowded = all.iter().filter(|sample| others(sample) % 2 == 0).count();
-        if 2 * crowded > all.len() {
+        // With the face itself.
+        let count =
+            |sample: &Sample| 1 + sample.distances.iter().filter(|d| **d <= tolerance).count();
+        let odd = all.iter().map(count).filter(|count| count % 2 != 0);
+        if 2 * odd.clone().count() > all.len() {
             let piece = &pieces[all[0].piece];
             let middle = faces[piece.face].border(piece.curve, 0.5);
             let point = middle.map_or(DVec3::ZERO, |(_, point)| point);
-            let why = "an odd number of faces has that border";
-            return Err(open(piece.face, point, why, limit));
+            let count = odd.max().unwrap_or(0);
+            let why = format!("{count} faces have it, and not two");
+            return Err(open(piece.face, point, &why));
         }
     }
     Ok(tolerance)
 }
 
-fn open(face: usize, DVec3 { x, y, z }: DVec3, why: &str, limit: f64) -> GeometryError {
+fn open(face: usize, DVec3 { x, y, z }: DVec3, why: &str) -> GeometryError {
     GeometryError::NotClosedAt {
         what: "brep",
         index: face as u64,
         why: format!(
-            "face {face} (counted from 0) has a border at <{x}, {y}, {z}>, but {why} within {limit:.3e}"
+            "face {face} (counted from 0) has a border at <{x:.6}, {y:.6}, {z:.6}>, but {why}"
         ),
     }
 }

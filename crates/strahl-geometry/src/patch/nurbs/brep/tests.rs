@@ -181,7 +181,9 @@ fn crossings(solid: &dyn Solid, ray: &Ray) -> Crossings {
 
 /// The parts of a line within a solid.
 fn spans(solid: &dyn Solid, ray: &Ray) -> Vec<[f64; 2]> {
-    let list = crossings(solid, ray);
+    let mut list = crossings(solid, ray);
+    // Within trees there are also surfaces that the line passes inside.
+    list.list.retain(|crossing| crossing.side != Side::Inner);
     assert!(
         !list.inside_at_start && list.list.len() % 2 == 0,
         "{ray:?} {list:?}"
@@ -247,7 +249,7 @@ fn solids_are_those_that_the_faces_close() {
             });
             assert!(near || ours.contains(p) == theirs.contains(p), "{p}");
         }
-        assert!(length > 1000.0, "{length}");
+        assert!(length > 400.0, "{length}");
     }
 }
 
@@ -361,15 +363,40 @@ fn a_shell_that_is_not_closed_says_where() {
         let mut faces = all.clone();
         faces.push(faces[twice].clone());
         let text = message(&faces);
-        assert!(text.contains("an odd number of faces"), "{text}");
+        assert!(text.contains("but 3 faces have it"), "{text}");
     }
     // A gap that is wide enough to be seen.
     let text = message(&can(1e-3));
     assert!(text.contains("brep is not closed"), "{text}");
-    // The same ball twice: no side is outside.
     let ball = whole(&sphere());
     let text = message(&[ball.clone(), ball]);
+    assert!(text.contains("but 3 faces have it"), "{text}");
+    // Two sheets with nothing between them, and two boxes that cross.
+    let sheet = round(DVec3::ZERO, 1.2, 1.0, false);
+    let text = message(&[sheet.clone(), sheet]);
     assert!(text.contains("inside on both sides"), "{text}");
+    let cube = |from: DVec3| {
+        (0..6).map(move |k| {
+            let [a, b, c] = [0, 1, 2].map(|i| DVec3::AXES[(k + i) % 3]);
+            whole(&flat(from + a * (k / 3) as f64, b, c))
+        })
+    };
+    let both = cube(DVec3::ZERO)
+        .chain(cube(DVec3::new(0.5, 0.4, 0.6)))
+        .collect::<Vec<_>>();
+    let text = message(&both);
+    assert!(text.contains("faces cross or lie on each other"), "{text}");
+    // Beside each other they are one solid.
+    let both = cube(DVec3::ZERO)
+        .chain(cube(DVec3::X * 2.0))
+        .collect::<Vec<_>>();
+    let two = brep(&both);
+    assert!(
+        [0.5, 2.5]
+            .iter()
+            .all(|x| two.contains(DVec3::new(*x, 0.5, 0.5)))
+    );
+    assert!(!two.contains(DVec3::new(1.5, 0.5, 0.5)));
     let open = Nurbs::try_trimmed(&sphere(), &[ring(DVec2::new(2.0, 1.0), 0.3, true)]).unwrap();
     let text = message(&[Arc::new(open)]);
     assert!(text.contains("no other face has that border"), "{text}");
@@ -455,7 +482,7 @@ fn a_ball_is_cut_from_a_block() {
             met += a.len();
         }
     }
-    assert!(met > 2000, "{met}");
+    assert!(met > 1000, "{met}");
 }
 
 #[test]
