@@ -472,7 +472,7 @@ def test_surfaces_that_close_a_volume_are_a_solid() -> None:
     distance = np.maximum(np.hypot(points[:, 0], points[:, 1]), abs(points[:, 2]))
     for radius in (1, 1 - 1e-6):
         solid = strahl.brep(_can(radius), name="can", material="#aaccee")
-        assert solid.kind == "nurbs_brep"
+        assert solid.kind == "brep"
         expected = np.where(distance < 1, 0, -1)
         assert np.array_equal(strahl.Scene(solid).inside(points), expected)
     cut = strahl.Scene(strahl.brep(*_can()) - strahl.sphere((0, 0, 1), 0.5))

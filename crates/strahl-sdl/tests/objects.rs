@@ -404,6 +404,108 @@ fn mistakes_in_nurbs_are_explained() {
     }
 }
 
+/// A face of the unit cube.
+const SQUARE: &str = "#declare Square = nurbs { degree 1 row { 0, x } row { y, x + y } }";
+/// All of them, by one that is turned about the diagonal.
+const FACES: &str = "Square object { Square translate z }
+    object { Square matrix <0, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0> } object { Square matrix <0, 1, 0, 0, 0, 1, 1, 0, 0, 1, 0, 0> }
+    union { object { Square matrix <0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 0> } object { Square matrix <0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0> } }";
+
+#[test]
+fn surfaces_that_close_a_volume_are_solids() {
+    for modifiers in ["", "pigment { rgb 1 } scale 1", "interior { ior 1.5 }"] {
+        let found = shape(&format!("{SQUARE} brep {{ {FACES} {modifiers} }}"));
+        let Shape::NurbsBrep(solid) = &found else {
+            panic!("no solid");
+        };
+        assert_eq!((solid.face_count(), solid.elements()), (6, 6));
+        let inside = found.as_solid().expect("a solid");
+        assert!(inside.contains(DVec3::splat(0.5)) && !inside.contains(DVec3::splat(1.01)));
+    }
+    let tree = object(&format!(
+        "{SQUARE} difference {{ brep {{ {FACES} }} sphere {{ 1, 0.5 }} }}"
+    ));
+    assert_eq!(operation(&tree).0, CsgOp::Difference);
+    let said = debug(&format!(
+        "{SQUARE} #declare Cube = brep {{ {FACES} }} #declare N = 0;
+         #declare P = trace(Cube, <0.3, 0.4, -5>, z, N);
+         #debug concat(str(inside(0.5, Cube), 0, 0), str(inside(1.5, Cube), 0, 0), \" \", vstr(3, P, \",\", 0, 2), \" \", vstr(3, N, \",\", 0, 2))"
+    ));
+    assert_eq!(said, "10 0.30,0.40,0.00 0.00,0.00,-1.00");
+    // Scenes may use the word as a name.
+    let (read, _) = scene("#declare brep = sphere { 0, 1 } object { brep }");
+    assert_eq!(read.objects.0.len(), 1);
+}
+
+#[test]
+fn a_brep_that_is_not_closed_is_surfaces_and_says_where() {
+    for (text, expected, count) in [
+        (
+            "Square object { Square translate z }",
+            "face 0 (counted from 0) has a border at <",
+            2,
+        ),
+        ("Square", "brep is not closed: face 0", 1),
+        (&format!("{FACES} Square"), "but 3 faces have it", 7),
+        (
+            &FACES.replacen("Square translate z", "Square translate 1.001 * z", 1),
+            "brep is not closed",
+            6,
+        ),
+    ] {
+        let (read, messages) = scene(&format!("{SQUARE} brep {{ {text} pigment {{ rgb 1 }} }}"));
+        assert_eq!(messages.len(), 1, "{messages:?}");
+        assert!(messages[0].contains(expected), "{messages:?}");
+        let (op, faces) = operation(&read.objects.0[0]);
+        assert_eq!((op, faces.len()), (CsgOp::Union, count));
+    }
+    // The place is that of the face.
+    let parsed = parse_with(
+        &mut MemoryHost::new(),
+        "#declare A = nurbs { degree 1 row { 0, x } row { y, x + y } }\nbrep {\n  A\n}",
+    );
+    let span = parsed.diagnostics[0].span;
+    assert_eq!((span.line, span.column), (3, 3));
+}
+
+#[test]
+fn mistakes_in_breps_are_explained() {
+    for (text, expected) in [
+        ("", "expected `nurbs`, or the name of such a surface"),
+        (
+            "pigment { rgb 1 }",
+            "expected `nurbs`, or the name of such a surface",
+        ),
+        (
+            "sphere { 0, 1 }",
+            "a face of a `brep` is a `nurbs`, found sphere",
+        ),
+        (
+            "difference { Square box { 0, 1 } }",
+            "a face of a `brep` is a `nurbs`, found difference",
+        ),
+        ("light_source { 0, 1 }", "found a light"),
+        ("nurbs { row { 0 } row { 0 } }", "columns of control points"),
+        (
+            "nurbs { degree 1 row { 0, <1e200 * 1e200, 0, 0> } row { y, x + y } }",
+            "is not finite",
+        ),
+        (
+            "object { Square pigment { rgb 1 } }",
+            "the texture of a face is left out",
+        ),
+        ("Square translate x bumpy", "bumpy"),
+    ] {
+        let text = format!("{SQUARE} sphere {{ 0, 1 }} brep {{ {text} }}");
+        let parsed = parse_with(&mut MemoryHost::new(), &text);
+        let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+        assert!(
+            messages.iter().any(|m| m.contains(expected)),
+            "{text}: {messages:?}"
+        );
+    }
+}
+
 /// A tetrahedron.
 const CAGE: &str =
     "points { 0, x, y, z } face { 0, 2, 1 } face { 0, 1, 3 } face { 1, 2, 3 } face { 0, 3, 2 }";

@@ -44,6 +44,26 @@ const QUARTER: &str = "
       #for (J, 0, 1) row { <1, 0, 2 * J>, <1, 1, 2 * J, sqrt(0.5)>, <0, 1, 2 * J> } #end
     }";
 
+/// A cylinder of radius 1 around z, from 0 to 2: a tube and two discs that are trimmed from squares.
+const CAN: &str = "
+    #declare Circle = array[9] { <1, 0>, <1, 1>, <0, 1>, <-1, 1>, <-1, 0>, <-1, -1>, <0, -1>, <1, -1>, <1, 0> }
+    #declare Weight = function(i) { select(mod(i, 2), 1, 1, sqrt(0.5)) }
+    #declare Lid = nurbs {
+      degree 1 u_knots { -2, -2, 2, 2 } v_knots { -2, -2, 2, 2 }
+      row { <-2, -2, 0>, <2, -2, 0> } row { <-2, 2, 0>, <2, 2, 0> }
+      trim { curve {
+        degree 2 knots { 0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4 }
+        #for (I, 0, 8) <Circle[I].x, Circle[I].y, Weight(I)> #end
+      } }
+    }
+    #declare Thing = brep {
+      Lid object { Lid translate 2 * z }
+      nurbs {
+        degree <2, 1> u_knots { 0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4 }
+        #for (J, 0, 1) row { #for (I, 0, 8) <Circle[I].x, Circle[I].y, 2 * J, Weight(I)> #end } #end
+      }
+    }";
+
 /// A cube of side 2. The limit of a corner of three faces is (9 v + 4 Σ e + Σ f) / 24, where e are its neighbours and f those across
 /// the faces; that of the middle of a face is the one of its point after one level, (16 v + 4 Σ e + Σ f) / 36.
 const CUBE: &str = "
@@ -156,6 +176,22 @@ const ROWS: &[Row<'_>] = &[
             "-1.01 * z",
             "10",
         ],
+    ),
+    (
+        "trimmed NURBS that close a volume",
+        CAN,
+        &[
+            (
+                "<3, 4, 1>",
+                "<-3, -4, 0>",
+                Some(("<0.6, 0.8, 1>", "<0.6, 0.8, 0>")),
+            ),
+            ("<0.3, 0.4, -9>", "z", Some(("<0.3, 0.4, 0>", "-z"))),
+            ("<0.3, 0.4, 1>", "z", Some(("<0.3, 0.4, 2>", "z"))),
+            ("<0.61, 0.8, -9>", "z", None),
+        ],
+        &["z", "<0.59, 0.8, 0.001>", "<-0.59, -0.8, 1.999>"],
+        &["<0.61, 0.8, 1>", "-0.001 * z", "2.001 * z"],
     ),
     (
         "Catmull and Clark's surface of a cube",

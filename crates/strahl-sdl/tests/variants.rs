@@ -141,6 +141,7 @@ const OBJECTS: &[&str] = &[
     "parametric",
     "bicubic_patch",
     "nurbs",
+    "brep",
     "terrain",
     "mandelbulb",
     "menger",

@@ -66,5 +66,4 @@ difference {
   object { Block texture { Glaze } }
   sphere { <1.0, 1.5, -0.8>, 0.75 texture { Ivory } }
   rotate 25 * y
-  translate <0, 0, 0>
 }

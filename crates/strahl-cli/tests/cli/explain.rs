@@ -418,6 +418,12 @@ fn hits_of_surfaces_and_fractals_are_explained() {
             Some(0.5),
         ),
         (
+            "brep",
+            "brep { #for (K, 0, 5) #local N = mod(K, 3); nurbs { degree 1 #for (J, 0, 1) row { #for (I, 0, 1)
+               #local P = <I - 0.5, J - 0.5, floor(K / 3) - 0.5>; (N = 0 ? P : N = 1 ? <P.z, P.x, P.y> : <P.y, P.z, P.x>) #end } #end } #end }",
+            Some(-0.5),
+        ),
+        (
             "subdivision",
             "subdivision { points { <-1, -1, 0>, <1, -1, 0>, <1, 1, 0>, <-1, 1, 0> } face { 0, 1, 2, 3 } }",
             Some(0.0),

@@ -41,7 +41,7 @@ pub use trim::{NurbsCurve, TrimLoop};
 /// along curves are as close there as their curves are.
 ///
 /// An untrimmed surface that is closed, because its sides are the same curves or collapsed to points, as those of a sphere or a
-/// torus, is a solid: a point is inside if the surface winds around it. Others have no inside; their front is the
+/// torus, is a solid: a point is inside if the surface winds around it. Others have no inside, but several of them may close a volume ([`NurbsBrep`]); their front is the
 /// side to which `dS/du x dS/dv` points. Texture coordinates are `u` and `v`, scaled to run from 0 to 1. Elements are the
 /// Bezier patches, with one facet each. Parts may be collapsed to lines or points: normals there are those of the surface
 /// beside them.

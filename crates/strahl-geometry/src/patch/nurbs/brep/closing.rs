@@ -146,12 +146,12 @@ pub(super) fn tolerance(faces: &[Face], size: f64) -> Result<f64, GeometryError>
     Ok(tolerance)
 }
 
-fn open(face: usize, DVec3 { x, y, z }: DVec3, why: &str) -> GeometryError {
+fn open(face: usize, point: DVec3, why: &str) -> GeometryError {
+    // A few digits are enough to find the place.
+    let [x, y, z] = point.to_array().map(|x| x as f32);
     GeometryError::NotClosedAt {
         what: "brep",
         index: face as u64,
-        why: format!(
-            "face {face} (counted from 0) has a border at <{x:.6}, {y:.6}, {z:.6}>, but {why}"
-        ),
+        why: format!("face {face} (counted from 0) has a border at <{x}, {y}, {z}>, but {why}"),
     }
 }

@@ -35,6 +35,24 @@ use strahl_math::{Aabb, DVec2, Interval, Ray};
 /// sequences in which entering and leaving alternate, the line has the one that contradicts the faces least. So every line leaves the solid as
 /// often as it enters, whatever the gaps.
 ///
+/// ```
+/// # use std::sync::Arc;
+/// # use strahl_geometry::{Nurbs, NurbsBrep, NurbsData, Primitive};
+/// # use strahl_math::DVec3;
+/// let face = |(corner, u, v): (DVec3, DVec3, DVec3)| {
+///     let points = vec![corner, corner + u, corner + v, corner + u + v];
+///     Nurbs::try_new(&NurbsData::new([1, 1], 2, points)).map(Arc::new)
+/// };
+/// let (o, x, y, z) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
+/// let sides = [(o, x, y), (z, x, y), (o, y, z), (x, y, z), (o, z, x), (y, z, x)];
+/// let faces = sides.into_iter().map(face).collect::<Result<Vec<_>, _>>()?;
+/// let cube = NurbsBrep::try_new(&faces)?;
+/// assert!(cube.as_solid().is_some_and(|solid| solid.contains(DVec3::splat(0.5))));
+/// let error = NurbsBrep::try_new(&faces[1..]).unwrap_err().to_string();
+/// assert!(error.contains("face 1 (counted from 0) has a border at"));
+/// # Ok::<(), strahl_geometry::GeometryError>(())
+/// ```
+///
 /// Elements are the Bezier patches of all faces, one face after the other, with one facet each. Texture coordinates are those of each face: `u` and
 /// `v`, scaled to run from 0 to 1.
 #[derive(Debug)]
@@ -212,7 +230,7 @@ impl Winding for NurbsBrep {
 
 impl Primitive for NurbsBrep {
     fn kind(&self) -> &'static str {
-        "nurbs_brep"
+        "brep"
     }
 
     /// The constructor has validated everything.

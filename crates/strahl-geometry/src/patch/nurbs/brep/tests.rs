@@ -40,6 +40,20 @@ fn can(gap: f64) -> Vec<Arc<Nurbs>> {
     vec![tube(1.0, -1.0, 1.0), disc(-1.0), disc(1.0)]
 }
 
+/// A can whose discs are polygons of so many corners: the gaps of files with straight lines for curves.
+fn angular(corners: u32) -> Vec<Arc<Nurbs>> {
+    let disc = |y: f64, turn: f64| {
+        let corner = |k: u32| {
+            let angle = TAU * (f64::from(k) + turn) / f64::from(corners);
+            DVec2::splat(0.5) + DVec2::from_angle(angle) / 2.4
+        };
+        let data = flat(DVec3::new(-1.2, y, -1.2), DVec3::X * 2.4, DVec3::Z * 2.4);
+        let polygon = TrimLoop::polygon((0..corners).map(corner).collect(), false);
+        Arc::new(Nurbs::try_trimmed(&data, &[polygon]).unwrap())
+    };
+    vec![disc(1.0, 0.0), tube(1.0, -1.0, 1.0), disc(-1.0, 0.3)]
+}
+
 const HALF: DVec3 = DVec3::new(1.0, 0.6, 0.8);
 
 /// The six faces of a box, each turned another way, without those across y.
@@ -307,10 +321,16 @@ fn shoot(rays: usize, seed: u64) -> [usize; 1] {
     let mut random = Random::new(seed);
     let gaps = [0.0, 1e-9, -1e-7, 2e-6, -1e-5];
     let gap = gaps[seed as usize % gaps.len()];
+    let can = if seed % 6 == 0 {
+        angular(300)
+    } else {
+        can(gap)
+    };
     let solids = [
-        (brep(&can(gap)), exact_can()),
+        (brep(&can), exact_can()),
         (brep(&bored(gap)), exact_bored()),
     ];
+    let smooth = brep(&rounded());
     let mut wrong = 0;
     for round in 0..rays {
         let (ours, exact) = &solids[round % 2];
@@ -327,8 +347,38 @@ fn shoot(rays: usize, seed: u64) -> [usize; 1] {
         // A line at a low angle is longer in the solid by the root of what this is wider.
         let allowed = 1e-5 + 8.0 * (2.0 * ours.tolerance()).sqrt();
         wrong += usize::from(off > allowed);
+        wrong += usize::from(shoot_smooth(&smooth, &mut random, aside));
     }
     [wrong]
+}
+
+/// A line at an edge of the rounded block, where a plane goes over into a round without a kink: whether it is inside where it should be.
+fn shoot_smooth(solid: &NurbsBrep, random: &mut Random, aside: DVec3) -> bool {
+    let inner = HALF - DVec3::splat(ROUND);
+    let mut target = random.cube() * inner;
+    // Out of the plane, at an edge of the face.
+    let out = random.below(3) as usize;
+    let other = (out + 1 + random.below(2) as usize) % 3;
+    target[out] = HALF[out];
+    target[other] = inner[other];
+    if random.below(4) == 0 {
+        target[3 - out - other] = inner[3 - out - other];
+    }
+    let flip = DVec3::from_array(std::array::from_fn(|_| {
+        [1.0, -1.0][random.below(2) as usize]
+    }));
+    let mut direction = random.direction();
+    if random.below(4) == 0 {
+        // Along the plane, nearly.
+        direction[out] *= random.magnitude(-9.0, -1.0);
+    }
+    let ray = Ray::new(target * flip + aside - direction, direction);
+    let spans = spans(solid, &ray);
+    (0..60).any(|k| {
+        let t = f64::from(k) / 20.0 - 1.0;
+        let off = off_rounded(ray.at(t));
+        off.abs() > 1e-6 && spans.iter().any(|[from, to]| *from < t && t < *to) != (off < 0.0)
+    })
 }
 
 #[test]
