@@ -58,6 +58,9 @@ pub struct Nurbs {
 const WEIGHTS: f64 = 1e9;
 /// Cells that trimming curves are put into, all curves together; with more all patches count as trimmed.
 const MOST_CELLS: usize = 1 << 26;
+/// Patches so near to a curve, in parts of all parameters, count as trimmed and are kept: a solid of several surfaces asks for what
+/// lies just beyond a curve.
+const BESIDE: f64 = 1e-4;
 
 impl Nurbs {
     /// The whole surface.
@@ -133,8 +136,12 @@ fn trim(patches: &mut data::Patches, region: &Region) {
     for [low, high] in region.boxes() {
         let cells = |k: usize, count: usize| {
             let breaks = &patches.breaks[k];
-            let from = breaks.partition_point(|b| *b < low[k]).saturating_sub(1);
-            let to = breaks.partition_point(|b| *b <= high[k]).min(count);
+            let from = breaks
+                .partition_point(|b| *b < low[k] - BESIDE)
+                .saturating_sub(1);
+            let to = breaks
+                .partition_point(|b| *b <= high[k] + BESIDE)
+                .min(count);
             from..to
         };
         let (columns, rows) = (cells(0, across), cells(1, up));

@@ -165,7 +165,7 @@ impl Parser<'_> {
         };
         self.take(token)?;
         self.count_objects(1)?;
-        // A declared object may be in the braces of any object; CSG operations and lights check for it themselves.
+        // A declared object may be in the braces of any object; CSG operations and lights check for it themselves, and a `brep` has several.
         let looks_itself = matches!(
             word,
             Word::LightSource
@@ -174,6 +174,7 @@ impl Parser<'_> {
                 | Word::Merge
                 | Word::Intersection
                 | Word::Difference
+                | Word::Brep
         );
         let named = !looks_itself && self.object_name_follows()?;
         Ok(Some(if named { object } else { parse }))

@@ -3,12 +3,15 @@
 use super::boxes::{Bounds, Boxes};
 use super::face::Face;
 use crate::GeometryError;
-use strahl_math::DVec3;
+use strahl_math::error::gamma;
+use strahl_math::{Aabb, DVec3};
 
 /// Borders of neighbours may be so far apart, in parts of the shell.
 const WIDEST: f64 = 1e-4;
 /// The least tolerance, in parts of the shell: above all rounding errors of parameters.
 const ROUNDING: f64 = 1e-9;
+/// So many roundings of coordinates are less than the tolerance, for shells that are small and far from the origin.
+const FAR: u32 = 256;
 /// Each piece of a border is compared with its neighbours at so many places.
 const SAMPLES: usize = 4;
 /// Each piece is searched from the nearest of so many steps.
@@ -83,8 +86,10 @@ struct Sample {
 ///
 /// # Errors
 /// A border has no neighbour, or more than one.
-pub(super) fn tolerance(faces: &[Face], size: f64) -> Result<f64, GeometryError> {
-    let limit = WIDEST * size;
+pub(super) fn tolerance(faces: &[Face], extent: &Aabb) -> Result<f64, GeometryError> {
+    let size = extent.size().length();
+    let least = (ROUNDING * size).max(gamma(FAR) * extent.max_abs());
+    let limit = (WIDEST * size).max(least);
     let mut pieces = vec![];
     for (number, face) in faces.iter().enumerate() {
         let all = (0..face.curves.len()).map(|curve| Piece::new(number, curve, face));
@@ -128,7 +133,7 @@ pub(super) fn tolerance(faces: &[Face], size: f64) -> Result<f64, GeometryError>
             });
         }
     }
-    let tolerance = (2.0 * widest).max(ROUNDING * size);
+    let tolerance = (2.0 * widest).max(least);
     for all in samples.chunk_by(|a, b| a.piece == b.piece) {
         // With the face itself.
         let count =

@@ -5,10 +5,11 @@ use super::super::part::Part;
 use super::super::trim::Region;
 use super::arc::Arc as Curve;
 use super::boxes::Boxes;
+use crate::Primitive;
 use std::sync::Arc;
-use strahl_math::{DVec2, DVec3};
+use strahl_math::{Aabb, DVec2, DVec3};
 
-/// A side that is shorter than this part of the shell is collapsed to a point: it is no border.
+/// A side that is shorter than this part of the surface is collapsed to a point: it is no border.
 const COLLAPSED: f64 = 1e-9;
 /// How far from a side a place is looked at to know whether the side is a border of what the loops leave.
 const ASIDE: f64 = 1e-6;
@@ -88,8 +89,9 @@ pub(super) struct Standing {
 }
 
 impl Face {
-    /// The face of a surface, not continued yet; `size` is that of the shell.
-    pub(super) fn new(surface: &Nurbs, size: f64) -> Self {
+    /// The face of a surface, not continued yet.
+    pub(super) fn new(surface: &Nurbs) -> Self {
+        let size = surface.bounds().size().length();
         let parts: Vec<Part> = surface.parts.iter().map(Part::copy).collect();
         let region = surface.trimming.clone();
         let mut curves: Vec<Curve> = vec![];
@@ -147,6 +149,18 @@ impl Face {
             _ => 0.0,
         };
         ends.windows(2).map(way).sum()
+    }
+
+    /// A box around the border and the parts that are not trimmed: what is cut away does not count.
+    pub(super) fn extent(&self) -> Aabb {
+        let whole = self.parts.iter().filter(|part| !part.is_trimmed);
+        let whole = whole.map(|part| part.patch.bounds());
+        let curves = 0..self.curves.len();
+        let border = curves.flat_map(|curve| [0.0, 0.5, 1.0].map(|s| self.border(curve, s)));
+        let border = border.flatten().map(|(_, point)| Aabb::new(point, point));
+        whole
+            .chain(border)
+            .fold(Aabb::EMPTY, |all, own| all.union(&own))
     }
 
     pub(super) fn parts(&self) -> &[Part] {

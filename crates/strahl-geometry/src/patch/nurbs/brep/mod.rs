@@ -94,12 +94,10 @@ impl NurbsBrep {
                 why: "it has no faces",
             });
         }
-        let bounds = faces
-            .iter()
-            .fold(Aabb::EMPTY, |all, face| all.union(&face.bounds()));
-        let size = bounds.size().length();
-        let mut faces: Vec<Face> = faces.iter().map(|face| Face::new(face, size)).collect();
-        let tolerance = closing::tolerance(&faces, size)?;
+        let mut faces: Vec<Face> = faces.iter().map(|face| Face::new(face)).collect();
+        let extents = faces.iter().map(Face::extent);
+        let extent = extents.fold(Aabb::EMPTY, |all, own| all.union(&own));
+        let tolerance = closing::tolerance(&faces, &extent)?;
         for face in &mut faces {
             face.continue_by(REACH * tolerance);
         }

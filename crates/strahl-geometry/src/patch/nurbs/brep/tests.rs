@@ -484,6 +484,37 @@ fn faces_may_be_turned_either_way() {
     }
 }
 
+/// Planes may be much larger than what is left of them, and shells far from the origin.
+#[test]
+fn large_planes_and_far_places_change_nothing() {
+    let place = DVec3::new(3e5, -2e5, 1e5);
+    let disc = |y: f64| round(DVec3::Y * y, 500.0, 1.0, false);
+    let near = vec![tube(1.0, -1.0, 1.0), disc(-1.0), disc(1.0)];
+    let moved = |face: &Arc<Nurbs>| match face.baked(&Transform::translate(place)) {
+        Some(Shape::Nurbs(face)) => face,
+        _ => panic!("not baked"),
+    };
+    let far: Vec<_> = can(0.0).iter().map(moved).collect();
+    let (near, far) = (brep(&near), brep(&far));
+    assert!(
+        near.tolerance() < 1e-8 && far.tolerance() < 1e-7,
+        "{near:?}"
+    );
+    let exact = exact_can();
+    let mut random = Random::new(5);
+    for _ in 0..3000 {
+        let ray = Ray::new(random.cube() * 2.0, random.direction());
+        let expected = spans(exact.as_solid().unwrap(), &ray);
+        let apart = Ray::new(ray.origin + place, ray.direction);
+        for found in [spans(&near, &ray), spans(&far, &apart)] {
+            assert!(
+                difference(&found, &expected) < 1e-3,
+                "{ray:?} {found:?} {expected:?}"
+            );
+        }
+    }
+}
+
 /// A loop along the sides of a surface and one beyond them leave all of it.
 #[test]
 fn loops_along_the_sides_and_beyond_them_are_borders_once() {
