@@ -12,10 +12,10 @@
 // NURBS surfaces, Journal of Graphics Tools 5(1).
 #include "../gallery.inc"
 
-#declare Height = 1.5;
-#declare Side = <0.95, 0.65>;  // half of the straight sides
-#declare Round = 0.3;
-#declare Bore = 0.42;
+#declare Height = 1.4;
+#declare Side = <0.74, 0.5>;  // half of the straight sides
+#declare Round = 0.26;
+#declare Bore = 0.36;
 #declare Around = array[9] { <1, 0>, <1, 1>, <0, 1>, <-1, 1>, <-1, 0>, <-1, -1>, <0, -1>, <1, -1>, <1, 0> }
 #macro Weight(I) (mod(I, 2) = 1 ? sqrt(0.5) : 1) #end
 #declare Quarters = array[12] { 0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4 }
@@ -64,6 +64,7 @@
 
 difference {
   object { Block texture { Glaze } }
-  sphere { <1.0, 1.5, -0.8>, 0.75 texture { Ivory } }
-  rotate 25 * y
+  sphere { <0.85, 1.4, -0.6>, 0.62 texture { Ivory } }
+  rotate 30 * y
+  translate 0.06 * x
 }
