@@ -6,8 +6,8 @@
 // t_(i+1)) N_(i+1),p-1(u)`.
 //
 // Limits: degrees are from 1 to 9; there are 8388608 control points after knots are inserted, at most; no weight is more than 10^9 times another.
-// Only surfaces that are closed and not trimmed have an inside, or several together as a `brep`. Two surfaces that are trimmed along different curves are as close there as the
-// curves are.
+// Only surfaces that are closed and not trimmed have an inside, or several together as a `brep`. Two surfaces that are trimmed along different
+// curves are as close there as the curves are.
 //
 // L. Piegl, W. Tiller, The NURBS Book, 2nd ed., chapters 2 to 4.
 #include "../gallery.inc"

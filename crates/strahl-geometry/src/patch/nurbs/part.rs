@@ -122,11 +122,11 @@ fn extended<const K: usize>(curve: Curve<4, K>, [before, after]: [f64; 2]) -> Cu
 /// The curve from its begin to a parameter beyond its end (de Casteljau).
 fn continued<const K: usize>(curve: &Curve<4, K>, at: f64) -> Curve<4, K> {
     let (mut row, mut out) = (*curve, *curve);
-    for step in 1..K {
+    for (step, place) in out.iter_mut().enumerate().skip(1) {
         for i in 0..K - step {
             row[i] = std::array::from_fn(|k| row[i][k] + (row[i + 1][k] - row[i][k]) * at);
         }
-        out[step] = row[0];
+        *place = row[0];
     }
     out
 }

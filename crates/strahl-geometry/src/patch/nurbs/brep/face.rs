@@ -240,14 +240,15 @@ impl Face {
 
     /// Continues the surface beyond its sides, at least as far as this in space unless it is too short.
     pub(super) fn continue_by(&mut self, reach: f64) {
-        let mut by = [[0.0; 2]; 2];
-        for axis in 0..2 {
-            for end in 0..2 {
-                if !self.is_collapsed[axis][end] {
-                    by[axis][end] = self.beyond(axis, end, reach);
+        let by: [[f64; 2]; 2] = std::array::from_fn(|axis| {
+            std::array::from_fn(|end| {
+                if self.is_collapsed[axis][end] {
+                    0.0
+                } else {
+                    self.beyond(axis, end, reach)
                 }
-            }
-        }
+            })
+        });
         let continued = |part: &Part| {
             let size = [0, 1].map(|k| part.to[k] - part.from[k]);
             let (mut from, mut to) = (part.from, part.to);

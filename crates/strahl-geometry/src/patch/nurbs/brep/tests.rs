@@ -199,7 +199,7 @@ fn spans(solid: &dyn Solid, ray: &Ray) -> Vec<[f64; 2]> {
     // Within trees there are also surfaces that the line passes inside.
     list.list.retain(|crossing| crossing.side != Side::Inner);
     assert!(
-        !list.inside_at_start && list.list.len() % 2 == 0,
+        !list.inside_at_start && list.list.len().is_multiple_of(2),
         "{ray:?} {list:?}"
     );
     let mut all = vec![];
@@ -321,7 +321,7 @@ fn shoot(rays: usize, seed: u64) -> [usize; 1] {
     let mut random = Random::new(seed);
     let gaps = [0.0, 1e-9, -1e-7, 2e-6, -1e-5];
     let gap = gaps[seed as usize % gaps.len()];
-    let can = if seed % 6 == 0 {
+    let can = if seed.is_multiple_of(6) {
         angular(300)
     } else {
         can(gap)

@@ -78,7 +78,7 @@ pub(super) fn turns(shell: &NurbsBrep) -> Result<Vec<i32>, GeometryError> {
 fn ask(shell: &NurbsBrep, line: &Ray, votes: &mut [Votes]) {
     let meetings = shell.meetings(line);
     let is_certain = |m: &Meeting| m.standing.is_on && m.standing.distance.is_none();
-    if meetings.len() % 2 != 0 || !meetings.iter().all(is_certain) {
+    if !meetings.len().is_multiple_of(2) || !meetings.iter().all(is_certain) {
         return;
     }
     for (place, meeting) in meetings.iter().enumerate() {
