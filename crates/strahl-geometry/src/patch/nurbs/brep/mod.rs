@@ -16,10 +16,10 @@ use crate::patch::winding::{Pass, Winding};
 use crate::primitives::point_error;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use face::{Face, Standing};
-use sequence::{CERTAIN, Doubt};
+use sequence::{CERTAIN, Doubt, Settled, settle};
 use std::sync::Arc;
 use strahl_accel::Visitor;
-use strahl_math::{Aabb, DVec2, Interval, Ray};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// A solid within NURBS surfaces, trimmed or whole, which together close a volume: a boundary representation, as programs for
 /// computer-aided design write.
@@ -32,8 +32,8 @@ use strahl_math::{Aabb, DVec2, Interval, Ray};
 /// Curves that trim neighbours never run exactly along each other in space. A line that meets the shell beside an edge may slip through
 /// between two faces, or meet both. Therefore each surface is continued a little beyond its border, and each crossing near a border,
 /// on either side of it, counts as doubtful: by how much, its distance from the border in space tells. Of all
-/// sequences in which entering and leaving alternate, the line has the one that contradicts the faces least. So every line leaves the solid as
-/// often as it enters, whatever the gaps.
+/// sequences in which entering and leaving alternate, the line has the one that contradicts the faces least. Between two doubtful crossings
+/// that are far apart another line tells whether it is inside there. So every line leaves the solid as often as it enters, whatever the gaps.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -66,10 +66,16 @@ pub struct NurbsBrep {
     tree: ElementTree,
     /// The width of gaps between faces, at most.
     tolerance: f64,
+    /// How far from a border crossings are doubtful at most.
+    farthest: f64,
 }
 
 /// Crossings are doubtful up to so many tolerances from a border: a line at a low angle is further from it than the gap is wide.
 const REACH: f64 = 16.0;
+/// If a certain crossing would have to be left out, a line is at so low an angle that others are doubtful up to this part of the shell's diagonal.
+const FARTHEST: f64 = 1e-3;
+/// A point that is further than so many reaches from where a line meets faces is asked whether it is inside.
+const APART: f64 = 4.0;
 
 /// A place where a line meets a face, or its surface just beyond the border.
 #[derive(Clone, Copy, Debug)]
@@ -98,8 +104,9 @@ impl NurbsBrep {
         let extents = faces.iter().map(Face::extent);
         let extent = extents.fold(Aabb::EMPTY, |all, own| all.union(&own));
         let tolerance = closing::tolerance(&faces, &extent)?;
+        let farthest = (FARTHEST * extent.size().length()).max(REACH * tolerance);
         for face in &mut faces {
-            face.continue_by(REACH * tolerance);
+            face.continue_by(farthest);
         }
         let (mut owners, mut boxes) = (vec![], vec![]);
         for (number, face) in (0..).zip(&faces) {
@@ -114,6 +121,7 @@ impl NurbsBrep {
             owners,
             tree: ElementTree::new(&boxes),
             tolerance,
+            farthest,
         };
         shell.turns = turning::turns(&shell)?;
         Ok(shell)
@@ -138,14 +146,15 @@ impl NurbsBrep {
         Some((face as usize, part as usize))
     }
 
-    /// All places where a line meets faces, and those where it nearly does, in their order.
-    fn meetings(&self, ray: &Ray) -> Vec<Meeting> {
+    /// All places where a line meets faces, and those up to `reach` beyond their borders, in their order.
+    fn meetings(&self, ray: &Ray, reach: f64) -> Vec<Meeting> {
         let Some(frame) = Frame::new(ray) else {
             return vec![];
         };
         let mut visitor = Meetings {
             shell: self,
             frame,
+            reach,
             found: vec![],
         };
         self.tree.walk(ray, Interval::LINE, &mut visitor);
@@ -163,12 +172,64 @@ impl NurbsBrep {
         });
         found
     }
+
+    /// The sign of a meeting is 1 where the line leaves, if it crosses the shell there.
+    fn sign(&self, meeting: &Meeting) -> i32 {
+        meeting.sign * self.turns[meeting.face]
+    }
+
+    /// Which meetings of a line, up to `reach` beyond borders, are crossings of the shell.
+    fn settled(&self, ray: &Ray, reach: f64) -> (Vec<Meeting>, Settled) {
+        let meetings = self.meetings(ray, reach);
+        let doubts = self.doubts(&meetings);
+        let apart = APART * reach / ray.direction.length();
+        let mut known = vec![];
+        for (place, pair) in meetings.windows(2).enumerate() {
+            let [from, to] = [pair[0].hit.t, pair[1].hit.t];
+            let is_doubtful = doubts[place..=place + 1].iter().all(|d| d.cost < CERTAIN);
+            if is_doubtful && to - from > 2.0 * apart {
+                let middle = ray.at(0.5 * (from + to));
+                known.extend(self.asks(middle).map(|is_inside| (place, is_inside)));
+            }
+        }
+        let settled = settle(&doubts, &known);
+        (meetings, settled)
+    }
+
+    fn doubts(&self, meetings: &[Meeting]) -> Vec<Doubt> {
+        let doubt = |m: &Meeting| Doubt {
+            enters: self.sign(m) < 0,
+            is_on: m.standing.is_on,
+            cost: m.standing.distance.map_or(CERTAIN, |d| d / self.tolerance),
+        };
+        meetings.iter().map(doubt).collect()
+    }
+
+    /// Whether a point is inside, from the first line through it that is certain in all it meets; `None` if there is none.
+    fn asks(&self, point: DVec3) -> Option<bool> {
+        let certain = |direction: &DVec3| {
+            let meetings = self.meetings(&Ray::new(point, *direction), self.reach());
+            let settled = settle(&self.doubts(&meetings), &[]);
+            let before = meetings.iter().filter(|m| m.hit.t < 0.0).count();
+            let is_certain = settled.cost == 0.0 && meetings.iter().all(Meeting::is_certain);
+            is_certain.then_some(before % 2 == 1)
+        };
+        turning::DIRECTIONS.iter().find_map(certain)
+    }
+}
+
+impl Meeting {
+    /// Whether the line meets the face far from its border.
+    fn is_certain(&self) -> bool {
+        self.standing.is_on && self.standing.distance.is_none()
+    }
 }
 
 /// Collects meetings with the elements along a line.
 struct Meetings<'a> {
     shell: &'a NurbsBrep,
     frame: Frame,
+    reach: f64,
     found: Vec<Meeting>,
 }
 
@@ -182,7 +243,7 @@ impl Visitor for Meetings<'_> {
             return t_max;
         };
         for candidate in patch.all(&self.frame, None) {
-            let standing = own.standing(part, candidate.place(), self.shell.reach());
+            let standing = own.standing(part, candidate.place(), self.reach);
             if standing.is_on || standing.distance.is_some() {
                 self.found.push(Meeting {
                     hit: hit(id, &candidate),
@@ -201,22 +262,21 @@ impl Winding for NurbsBrep {
 
     /// The passes through the shell, in their order; the sign is 1 where the line leaves.
     fn passes(&self, ray: &Ray) -> Vec<Pass> {
-        let meetings = self.meetings(ray);
-        let sign = |m: &Meeting| m.sign * self.turns[m.face];
-        let doubts: Vec<Doubt> = meetings
+        let (mut meetings, mut settled) = self.settled(ray, self.reach());
+        if settled.cost >= CERTAIN {
+            let (more, other) = self.settled(ray, self.farthest);
+            if other.cost < settled.cost {
+                (meetings, settled) = (more, other);
+            }
+        }
+        let pairs = meetings
             .iter()
-            .map(|m| Doubt {
-                enters: sign(m) < 0,
-                is_on: m.standing.is_on,
-                cost: m.standing.distance.map_or(CERTAIN, |d| d / self.tolerance),
-            })
-            .collect();
-        let taken = sequence::taken(&doubts);
-        let pairs = meetings.iter().zip(taken).filter(|(_, is_taken)| *is_taken);
+            .zip(settled.taken)
+            .filter(|(_, is_taken)| *is_taken);
         pairs
             .map(|(m, _)| Pass {
                 hit: m.hit,
-                sign: sign(m),
+                sign: self.sign(m),
             })
             .collect()
     }
@@ -284,11 +344,7 @@ impl Primitive for NurbsBrep {
             .zip(face)
             .and_then(|((_, part), (face, _))| face.parts().get(part));
         let (Some((face, turn)), Some(part)) = (face, part) else {
-            return SurfacePoint::bare(
-                ray.at(hit.t),
-                strahl_math::DVec3::ZERO,
-                elements::against(ray),
-            );
+            return SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, elements::against(ray));
         };
         let uv = DVec2::from_array(hit.uv);
         let back = part.patch.normal(uv, part.patch.jet(uv.x, uv.y));

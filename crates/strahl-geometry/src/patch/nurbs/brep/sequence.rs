@@ -11,6 +11,15 @@ pub(super) struct Doubt {
     pub(super) cost: f64,
 }
 
+/// The crossings of a line with a shell.
+#[derive(Clone, Debug)]
+pub(super) struct Settled {
+    /// Which of the crossings with faces they are.
+    pub(super) taken: Vec<bool>,
+    /// How much they contradict the faces; at least [`CERTAIN`] if a certain crossing is left out.
+    pub(super) cost: f64,
+}
+
 /// What it costs to leave out a crossing that is not near a border: more than to decide all others otherwise.
 pub(super) const CERTAIN: f64 = 1e9;
 
@@ -20,10 +29,13 @@ pub(super) const CERTAIN: f64 = 1e9;
 /// that is taken although it is beyond, costs the more the further it is from the border. The cheapest choice up to each
 /// crossing, once for a line that is then outside and once for one that is inside, follows from those up to the one before (R. Bellman,
 /// Dynamic Programming, 1957).
-pub(super) fn taken(crossings: &[Doubt]) -> Vec<bool> {
+///
+/// `known` has for some of the crossings, in their order, whether the line is inside behind them. What contradicts all sequences is ignored.
+pub(super) fn settle(crossings: &[Doubt], known: &[(usize, bool)]) -> Settled {
     let mut costs = [0.0, f64::INFINITY];
     let mut choices: Vec<[bool; 2]> = Vec::with_capacity(crossings.len());
-    for crossing in crossings {
+    let mut known_left = known.iter().peekable();
+    for (number, crossing) in crossings.iter().enumerate() {
         let (leave, take) = if crossing.is_on {
             (crossing.cost, 0.0)
         } else {
@@ -37,6 +49,12 @@ pub(super) fn taken(crossings: &[Doubt]) -> Vec<bool> {
         costs[1 - after] += leave;
         costs[after] = if is_taken { crossed } else { left };
         choices.push(choice);
+        if let Some((_, is_inside)) = known_left.next_if(|(place, _)| *place == number) {
+            costs[usize::from(!is_inside)] = f64::INFINITY;
+        }
+    }
+    if costs[0] == f64::INFINITY {
+        return settle(crossings, &[]);
     }
     let mut state = 0;
     let mut taken = vec![false; crossings.len()];
@@ -46,7 +64,10 @@ pub(super) fn taken(crossings: &[Doubt]) -> Vec<bool> {
             state = 1 - state;
         }
     }
-    taken
+    Settled {
+        taken,
+        cost: costs[0],
+    }
 }
 
 #[cfg(test)]
@@ -99,7 +120,7 @@ mod tests {
                     crossing(random.below(2) == 0, random.below(3) > 0, cost)
                 })
                 .collect();
-            let taken = taken(&all);
+            let Settled { taken, cost: told } = settle(&all, &[]);
             let mut inside = false;
             let mut cost = 0.0;
             for (c, is_taken) in all.iter().zip(&taken) {
@@ -112,12 +133,14 @@ mod tests {
             assert!(!inside);
             let best = exhaustive(&all);
             assert!((cost - best).abs() <= 1e-12 * best, "{cost} {best}");
+            assert!((cost - told).abs() <= 1e-12 * best, "{cost} {told}");
         }
     }
 
     #[test]
     fn what_alternates_stays_and_doubts_beside_an_edge_are_settled() {
         let sure = |enters| crossing(enters, true, CERTAIN);
+        let taken = |all: &[Doubt]| settle(all, &[]).taken;
         assert_eq!(taken(&[]), Vec::<bool>::new());
         assert_eq!(taken(&[sure(true), sure(false)]), [true, true]);
         // A gap.
@@ -134,5 +157,17 @@ mod tests {
         assert_eq!(taken(&twice), [true, false, true]);
         // A face that is missing.
         assert_eq!(taken(&[sure(true)]), [false]);
+        assert_eq!(settle(&[sure(true)], &[]).cost, CERTAIN);
+    }
+
+    #[test]
+    fn what_is_known_between_two_gaps_decides() {
+        let gaps = [crossing(true, false, 0.1), crossing(false, false, 0.3)];
+        assert_eq!(settle(&gaps, &[]).taken, [false, false]);
+        assert_eq!(settle(&gaps, &[(0, false)]).taken, [false, false]);
+        assert_eq!(settle(&gaps, &[(0, true)]).taken, [true, true]);
+        // What is known contradicts all sequences.
+        assert_eq!(settle(&gaps, &[(1, true)]).taken, [false, false]);
+        assert_eq!(settle(&gaps[1..], &[(0, true)]).taken, [false]);
     }
 }

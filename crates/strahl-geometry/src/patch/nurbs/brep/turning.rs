@@ -6,7 +6,7 @@ use crate::GeometryError;
 use strahl_math::{DVec2, DVec3, Ray};
 
 /// Lines are shot along these directions, which are parallel to nothing that occurs in scenes.
-const DIRECTIONS: [DVec3; 3] = [
+pub(super) const DIRECTIONS: [DVec3; 3] = [
     DVec3::new(0.526_438_109_1, 0.315_904_772_9, 0.789_365_214_7),
     DVec3::new(-0.713_820_448_3, 0.612_497_311_7, 0.339_518_836_1),
     DVec3::new(0.205_113_977_9, -0.881_604_120_7, 0.424_990_518_3),
@@ -76,9 +76,8 @@ pub(super) fn turns(shell: &NurbsBrep) -> Result<Vec<i32>, GeometryError> {
 
 /// Adds what a line tells, if all of it is certain.
 fn ask(shell: &NurbsBrep, line: &Ray, votes: &mut [Votes]) {
-    let meetings = shell.meetings(line);
-    let is_certain = |m: &Meeting| m.standing.is_on && m.standing.distance.is_none();
-    if !meetings.len().is_multiple_of(2) || !meetings.iter().all(is_certain) {
+    let meetings = shell.meetings(line, shell.reach());
+    if !meetings.len().is_multiple_of(2) || !meetings.iter().all(Meeting::is_certain) {
         return;
     }
     for (place, meeting) in meetings.iter().enumerate() {
