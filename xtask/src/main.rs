@@ -32,6 +32,7 @@ mod spd;
 
 use anyhow::{Result, bail};
 use std::path::Path;
+use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
   bench spd [FOLDER] [--runs N] [--threads N] [--only NAME,...]
@@ -75,7 +76,17 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   spd rings|tree|lattice SIZE -o FILE.nff[.gz]
                                   writes a scene in the spirit of SPD; bench spd takes rings 7, tree 11 and lattice 12";
 
-fn main() -> Result<()> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = args.iter().map(String::as_str).collect();
     match words.as_slice() {

@@ -240,17 +240,17 @@ mod tests {
         -1 -1 -1\n1 -1 -1\n-1 1 -1\n1 1 -1\n-1 -1 1\n1 -1 1\n-1 1 1\n1 1 1\n\
         4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
-    fn loaded(text: &str, format: &str, scheme: SubdivisionScheme) -> crate::Loaded {
+    fn loaded(text: &str, format: &str, options: SubdivideOptions) -> crate::Loaded {
         let options = LoadOptions {
-            subdivide: Some(scheme.into()),
+            subdivide: Some(options),
             ..LoadOptions::default()
         };
         let format: Format = format.parse().expect("a format");
         load_bytes(text.into(), "file", format, options)
     }
 
-    fn data(text: &str, format: &str, scheme: SubdivisionScheme) -> SubdivisionData {
-        let scene = loaded(text, format, scheme).scene.expect("a scene");
+    fn data(text: &str, format: &str, options: impl Into<SubdivideOptions>) -> SubdivisionData {
+        let scene = loaded(text, format, options.into()).scene.expect("a scene");
         match &scene.objects.0[0].kind {
             ObjectKind::Shape(Shape::Subdivision(surface)) => surface.data().clone(),
             other => panic!("{other:?}"),
@@ -326,16 +326,11 @@ mod tests {
     }
 
     fn creased(text: &str, format: &str, options: &str) -> SubdivisionData {
-        let options = LoadOptions {
-            subdivide: Some(options.parse().expect("options")),
-            ..LoadOptions::default()
-        };
-        let format: Format = format.parse().expect("a format");
-        let scene = load_bytes(text.into(), "file", format, options).scene;
-        match &scene.expect("a scene").objects.0[0].kind {
-            ObjectKind::Shape(Shape::Subdivision(surface)) => surface.data().clone(),
-            other => panic!("{other:?}"),
-        }
+        data(
+            text,
+            format,
+            options.parse::<SubdivideOptions>().expect("options"),
+        )
     }
 
     /// The edges of a cube, but not the diagonals of its sides, which are at 90 degrees. A cube that is sharp everywhere is a cube.
@@ -408,7 +403,7 @@ mod tests {
             (ball, "nff", "no mesh that could be subdivided"),
             (pov, "pov", "write a `subdivision { }` object"),
         ] {
-            let loaded = loaded(text, format, SubdivisionScheme::Loop);
+            let loaded = loaded(text, format, SubdivisionScheme::Loop.into());
             assert!(loaded.scene.is_none());
             let all: Vec<String> = loaded
                 .diagnostics
