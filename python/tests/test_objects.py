@@ -481,7 +481,7 @@ def test_surfaces_that_close_a_volume_are_a_solid() -> None:
     np.testing.assert_allclose(hits.normal, [[0, 0, 1], [0, 0, 1], [1, 0, 0]], atol=1e-9)
     for wrong, message in (
         (lambda: strahl.brep(), "no faces"),
-        (lambda: strahl.brep(_can()[:2]), "face 0 .* has a border at <.*> but no other face"),
+        (lambda: strahl.brep(_can()[:2]), "face 0 .* has a border at <.*>, but no other face"),
         (lambda: strahl.brep(_can(1.01)), "not closed"),
         (lambda: strahl.brep(strahl.sphere()), "must be a nurbs surface, not sphere"),
     ):
