@@ -48,9 +48,29 @@ fn every_triangle_is_found_as_without_the_pyramid() {
     let field = field(37, 23, 0.0, false);
     let surface = &field.body.0;
     let mut random = Random::new(5);
-    for _ in 0..2000 {
+    let mut met = 0;
+    for round in 0..6000 {
         let (from, to) = (random.cube() * 2.0, (random.cube() + DVec3::ONE) * 0.5);
-        let ray = Ray::new(from, (to - from) * random.magnitude(-2.0, 2.0));
+        let (i, j) = (random.below(37) as u32, random.below(23) as u32);
+        let vertex = surface.grid.vertex(i, j, surface.grid.height(i, j));
+        let ray = match round % 4 {
+            0 | 1 => Ray::new(from, (to - from) * random.magnitude(-2.0, 2.0)),
+            // Steep ones at vertices, from near and from far away.
+            2 => {
+                let slant = from.with_y(0.0) * random.magnitude(-18.0, 0.0);
+                let way = slant - DVec3::Y;
+                Ray::new(vertex - way * random.magnitude(-1.0, 9.0), way)
+            }
+            // Straight down, along rows and columns, and from where numbers end.
+            _ => {
+                let axis = DVec3::AXES[random.below(3) as usize];
+                let away = [0.5, 3.0, 1e9, 1e300, 1.7e308][random.below(5) as usize];
+                Ray::new(
+                    vertex + axis * away,
+                    -axis * random.magnitude(-300.0, 300.0),
+                )
+            }
+        };
         let shear = RayShear::new(&ray);
         let mut best: Option<(f64, u32)> = None;
         for element in 0..surface.triangles() {
@@ -70,7 +90,9 @@ fn every_triangle_is_found_as_without_the_pyramid() {
             best,
             "{ray:?}"
         );
+        met += u32::from(best.is_some());
     }
+    assert!(met > 3000, "{met}");
 }
 
 #[test]

@@ -28,6 +28,7 @@ pub(super) struct Descent<'a> {
     grid: &'a Grid,
     /// Lower heights are ignored.
     floor: f64,
+    direction: DVec3,
     /// Reciprocal direction.
     inverse: DVec3,
     /// Origin, plus and minus the pad, for the lower and upper faces of boxes.
@@ -63,6 +64,7 @@ impl<'a> Descent<'a> {
         Some(Self {
             grid,
             floor,
+            direction: ray.direction,
             inverse: DVec3::from_array(d.map(|d| 1.0 / d)),
             lower: ray.origin + pad,
             upper: ray.origin - pad,
@@ -86,19 +88,45 @@ impl<'a> Descent<'a> {
         let part = (later(along_x.0, along_z.0), earlier(along_x.1, along_z.1));
         match self.over(part, self.grid.full_range()) {
             Some(part) => {
-                dispatch!(Simd::best(), isa => self.descend(isa, top, part, &mut visit))
+                let block = self.block_below(part);
+                dispatch!(Simd::best(), isa => self.descend(isa, block, &mut visit))
             }
             None => ControlFlow::Continue(()),
         }
     }
 
-    /// Visits the cells of the block of all cells, above which the ray is in `part` of its parameters.
+    /// The smallest block with all cells above which the ray is in a part of its parameters. A ray that is steep where it passes the heights is above
+    /// few of them, and need not go down from the block of all cells.
+    fn block_below(&self, part: (f64, f64)) -> Block {
+        let (enter, exit) = part;
+        let (columns, rows) = self.grid.cells();
+        let cells = |axis: usize, count: u32| {
+            let (from, to) = (enter * self.direction[axis], exit * self.direction[axis]);
+            let (first, last) = if from < to { (from, to) } else { (to, from) };
+            let (first, last) = (self.upper[axis] + first, self.lower[axis] + last);
+            if first.is_nan() || last.is_nan() {
+                // The ray comes from where numbers end.
+                return (0, count - 1);
+            }
+            // The cast rounds down; what is beyond the edge becomes the first or the last cell.
+            let cell = |x: f64| ((x * f64::from(count)) as u32).min(count - 1);
+            (cell(first), cell(last))
+        };
+        let ((i, i_last), (j, j_last)) = (cells(0, columns), cells(2, rows));
+        let level = u32::BITS - ((i ^ i_last) | (j ^ j_last)).leading_zeros();
+        Block {
+            level,
+            place: (i >> level, j >> level),
+            part,
+        }
+    }
+
+    /// Visits the cells of a block.
     #[inline(always)]
     fn descend<I: Isa>(
         &mut self,
         isa: I,
-        top: u32,
-        part: (f64, f64),
+        block: Block,
         visit: &mut impl FnMut(&mut Interval, &Cell) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let grid = self.grid;
@@ -113,11 +141,7 @@ impl<'a> Descent<'a> {
         let start = isa.splat(self.range.min);
         // Of each block on the way down at most three quarters wait.
         let mut waiting = ArrayVec::<Block, 96>::new();
-        let mut next = Some(Block {
-            level: top,
-            place: (0, 0),
-            part,
-        });
+        let mut next = Some(block);
         while let Some(block) = next.or_else(|| waiting.pop()) {
             next = None;
             let (enter, exit) = block.part;
