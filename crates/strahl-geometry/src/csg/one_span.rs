@@ -6,11 +6,11 @@ use super::leaf::Leaf;
 use super::query::Query;
 use super::small::Small;
 use super::states::MOST;
-use crate::primitives::convex::Span;
-use crate::{PrimHit, SurfaceId};
+use crate::PrimHit;
+use crate::primitives::convex::{Span, Stay};
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
-use strahl_math::{Interval, Ray};
+use strahl_math::Interval;
 
 /// An end of the span, or of a hole.
 #[derive(Clone, Copy)]
@@ -65,28 +65,19 @@ impl Small {
     pub(super) fn visit_one_span(
         &self,
         leaves: &[Leaf],
-        ray: &Ray,
-        range: Interval,
-        from: Option<(u32, SurfaceId)>,
+        query: &mut Query<'_>,
         visit: &mut impl FnMut(PrimHit) -> ControlFlow<()>,
     ) -> Result<(), TooClose> {
-        // First of all, because most rays from surfaces leave them for good.
-        let start = from.map(|(number, surface)| {
-            let stay = leaves[number as usize].stay(ray, Some(surface));
-            (number, surface, stay)
-        });
-        if let Some((number, surface, Some(stay))) = start
-            && leaves[number as usize].is_left_for_good(&stay, surface)
-        {
-            return Ok(());
-        }
-        let Some(query) = &mut Query::new(ray, range, from) else {
-            return Ok(());
-        };
         // The beginning with its sign reversed, so that both ends are the nearest ones.
         let (mut enter, mut exit) = (Nearest::NONE, Nearest::NONE);
         let mut holes = Holes::new();
         let (far, mut may_show) = (query.alive.max, false);
+        let start = query.start(leaves);
+        if let (Some((_, Some(stay))), Some((number, surface))) = (start, query.from)
+            && leaves[number as usize].is_left_for_good(&stay, surface)
+        {
+            return Ok(());
+        }
         for (n, number) in self.leaf_numbers().enumerate() {
             // The others only clip, which does not matter if the ray meets no visible surface in the range.
             if n == self.visible && !may_show {
@@ -95,8 +86,8 @@ impl Small {
             let leaf = &leaves[number as usize];
             let own = query.own(number);
             let stay = match start {
-                Some((own, _, stay)) if own == number => stay,
-                _ => leaf.stay(ray, None),
+                Some((own, stay)) if own == number => stay,
+                _ => leaf.stay(query.ray, None),
             };
             let Some(stay) = stay else {
                 return Err(TooClose);
@@ -246,6 +237,14 @@ fn visit_around(
 }
 
 impl Query<'_> {
+    /// The leaf that the ray starts on, and where it is inside of its shape; `None` if it starts elsewhere.
+    #[inline(always)]
+    fn start(&self, leaves: &[Leaf]) -> Option<(u32, Option<Stay>)> {
+        let (number, surface) = self.from?;
+        let leaf = &leaves[number as usize];
+        Some((number, leaf.stay(self.ray, Some(surface))))
+    }
+
     /// Whether two parameters, the first one not above the second, are so close that crossings there could coincide; there are none at
     /// infinity.
     #[inline(always)]

@@ -101,12 +101,12 @@ impl Small {
         scratch: &mut Scratch,
         mut visit: impl FnMut(PrimHit, &mut Scratch) -> ControlFlow<()>,
     ) -> Result<(), TooClose> {
-        if self.is_intersection {
-            return self.visit_one_span(leaves, ray, range, from, &mut |hit| visit(hit, scratch));
-        }
         let Some(mut query) = Query::new(ray, range, from) else {
             return Ok(());
         };
+        if self.is_intersection {
+            return self.visit_one_span(leaves, &mut query, &mut |hit| visit(hit, scratch));
+        }
         if self.is_merge {
             return self.visit_merged(leaves, &query, None, &mut |hit| visit(hit, scratch));
         }
