@@ -11,7 +11,7 @@ use strahl_scene::{Background, BackgroundAlpha, Camera, ObjectExt, Scene};
 use strahl_shade::normal::{NormalKind, PovNormal};
 use strahl_shade::patterns::{Fractal, FractalKind, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
-use strahl_shade::pov_finish::PovFinish;
+use strahl_shade::pov_finish::{PovFinish, PovReflection};
 use strahl_shade::texture::{PlainTexture, Texture};
 use strahl_shade::{AreaLight, Color, ColorFt, Light, Material};
 
@@ -71,6 +71,29 @@ fn stone() -> Material {
     ]))
 }
 
+/// Four layers that mirror into different octants: the light of more than two children is added in their order, whichever go together.
+fn petals() -> Material {
+    let layer = |k: u32| {
+        let finish = PovFinish {
+            reflection: PovReflection::constant(Color::new(0.2, 0.23, 0.17)),
+            ..PovFinish::default()
+        };
+        let mut normal = PovNormal::new(NormalKind::Bumps);
+        normal.amount = 0.7 + 0.3 * f64::from(k);
+        let pigment = Pigment::from(ColorFt {
+            transmit: 0.7,
+            ..ColorFt::from(Color::gray(0.3))
+        });
+        Texture::Plain(PlainTexture {
+            pigment,
+            normal: Some(Box::new(normal)),
+            finish: finish.into(),
+            ..PlainTexture::default()
+        })
+    };
+    Material::textured(Texture::Layered((0..4).map(layer).collect()))
+}
+
 /// Every kind of ray: glass in glass, mirrors that face each other, an area light, light through tinted balls; and textures that are evaluated
 /// together.
 /// Without the wall behind them the balls stand in front of the background.
@@ -115,6 +138,7 @@ fn scene(walled: bool) -> RenderScene {
             0 => fractal(FractalKind::Power { exponent: 2 }),
             1 => fractal(FractalKind::Power { exponent: 3 }),
             2..=4 => stone(),
+            5..=7 => petals(),
             _ => tinted.clone(),
         };
         scene = scene.add(Sphere::new(center, 0.4).material(material));
