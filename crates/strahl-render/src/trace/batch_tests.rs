@@ -88,7 +88,6 @@ fn petals() -> Material {
             pigment,
             normal: Some(Box::new(normal)),
             finish: finish.into(),
-            ..PlainTexture::default()
         })
     };
     Material::textured(Texture::Layered((0..4).map(layer).collect()))
