@@ -21,6 +21,9 @@ pub(crate) struct Branch {
     pub(crate) part: SpectralPart,
     /// Whether it stands for a part of the spectrum while its parent stands for all of it.
     pub(crate) divided: bool,
+    /// Whether it must not overtake others that wait: light of three and more rays of one kind is added in their order, on which the last bits
+    /// of the sum depend.
+    pub(crate) ordered: bool,
     pub(crate) weight: f64,
     pub(crate) share: Share,
     pub(crate) media: MediaStack,
@@ -40,6 +43,7 @@ impl Branch {
         depth: 1,
         part: SpectralPart::WHITE,
         divided: false,
+        ordered: false,
         weight: 1.0,
         share: Share::ALL,
         media: MediaStack::VACUUM,
@@ -66,6 +70,7 @@ impl Branch {
             depth,
             part,
             divided,
+            ordered,
             weight,
             share,
             media,
@@ -73,7 +78,7 @@ impl Branch {
         *ray = *primary;
         *origin = none.origin;
         (*kind, *class, *depth) = (none.kind, none.class, none.depth);
-        (*part, *divided) = (none.part, none.divided);
+        (*part, *divided, *ordered) = (none.part, none.divided, none.ordered);
         (*weight, *share) = (none.weight, none.share);
         (*parent, *media) = (number, eye);
     }

@@ -46,6 +46,15 @@ impl<T: Clone> Slots<T> {
         self.count = self.count.checked_sub(1)?;
         self.list.get(self.count)
     }
+
+    /// Removes an element; the last one takes its place.
+    #[inline]
+    pub(super) fn swap_remove(&mut self, index: usize) {
+        self.count -= 1;
+        if index != self.count {
+            self.list[index] = self.list[self.count].clone();
+        }
+    }
 }
 
 impl<T> Deref for Slots<T> {

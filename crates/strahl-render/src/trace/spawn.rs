@@ -64,6 +64,7 @@ impl<'s> TreeTracer<'s> {
             paint,
             ..
         } = point;
+        let first = self.waiting.len();
         let mut mirrors = std::mem::take(&mut self.mirrors);
         if paint.stacks.len() > 1 && !surface.material.finish.transmission.is_black() {
             let passages = std::mem::take(&mut self.passages);
@@ -104,6 +105,10 @@ impl<'s> TreeTracer<'s> {
             self.queue(point, &mirrored, observer);
         }
         self.mirrors = mirrors;
+        let siblings = &mut self.waiting[first..];
+        if siblings.len() > 2 {
+            keep_order(siblings);
+        }
     }
 
     /// Queues the transparency ray of a passage, or the rays of the parts of its spectrum.
@@ -214,6 +219,7 @@ impl<'s> TreeTracer<'s> {
             depth,
             part,
             divided,
+            ordered,
             weight: with_weight,
             share,
             media: within,
@@ -221,6 +227,19 @@ impl<'s> TreeTracer<'s> {
         (*ray, *from) = (Ray::new(start, direction), Some(origin));
         (*of_kind, *class, *parent, *depth) = (kind, class_here, *node, depth_here);
         (*part, *divided) = (offshoot.part, offshoot.divided);
+        *ordered = kind == RayKind::Gather;
         (*with_weight, *share, *within) = (weight, offshoot.share, media);
+    }
+}
+
+/// Lets none of the rays of a hit overtake another if three or more are of one kind.
+#[cold]
+fn keep_order(siblings: &mut [Branch]) {
+    let is_mirrored = |branch: &&Branch| branch.kind == RayKind::Reflection;
+    let mirrored = siblings.iter().filter(is_mirrored).count();
+    if mirrored.max(siblings.len() - mirrored) > 2 {
+        for branch in siblings {
+            branch.ordered = true;
+        }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! repeat until no rays wait
-//!   take       up to sixteen rays that wait, the last first
+//!   take       up to sixteen rays that wait, those of one octant first
 //!   intersect  rays to hits
 //!   enter      a node for each ray; rays without a hit see the background
 //!   paint      hits to points with a normal, layers and coefficients
@@ -16,7 +16,7 @@
 use super::aim::Speeds;
 use super::colors::find_colors;
 use super::point::{Lanes, Point};
-use super::{FirstHit, Node, TreeTracer};
+use super::{Branch, FirstHit, Node, TreeTracer};
 use crate::activity::Phase;
 use crate::hit::{Hit, RayClass};
 use crate::layers;
@@ -27,6 +27,9 @@ use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
 use strahl_shade::Color;
+
+/// How many of the rays that wait are looked through for some that go together well.
+const NEAR_THE_END: usize = 64;
 
 impl<'s> TreeTracer<'s> {
     /// Grows the trees of the first `count` rays, `width` rays at a time. Returns `false` if it left off because there are too many of them:
@@ -63,17 +66,41 @@ impl<'s> TreeTracer<'s> {
         self.settings.max_tree_rays.min(MOST) as usize
     }
 
-    /// Takes rays that wait, the last first.
+    /// Takes rays that wait: of the last [`NEAR_THE_END`] first those with the octant of the last one, which meet the same nodes in the same
+    /// order, then the last ones.
     fn take(&mut self, width: usize, points: &mut Vec<Point<'s>>) -> usize {
         let mut count = 0;
-        while count < width
-            && let Some(next) = self.waiting.take()
-        {
+        let mut keep = |branch: &Branch| {
             if count == points.len() {
                 points.push(Point::unknown(&self.blank));
             }
-            points[count].branch = *next;
+            points[count].branch = *branch;
             count += 1;
+            count < width
+        };
+        let all = self.waiting.len();
+        let near = all.saturating_sub(NEAR_THE_END)..all;
+        if width > 1
+            && all > width
+            && let Some(octant) = self.waiting.last().map(octant_of)
+            && !self.waiting[near.clone()]
+                .iter()
+                .any(|branch| branch.ordered)
+        {
+            for index in near.rev() {
+                if octant_of(&self.waiting[index]) == octant {
+                    let goes_on = keep(&self.waiting[index]);
+                    self.waiting.swap_remove(index);
+                    if !goes_on {
+                        return count;
+                    }
+                }
+            }
+        }
+        while let Some(next) = self.waiting.take() {
+            if !keep(next) {
+                break;
+            }
         }
         count
     }
@@ -306,4 +333,11 @@ impl<'s> TreeTracer<'s> {
             part: branch.part,
         }
     }
+}
+
+/// The octant of a ray's direction: the axes along which it goes down, as bits.
+#[inline]
+fn octant_of(branch: &Branch) -> u32 {
+    let [x, y, z] = branch.ray.direction.to_array().map(|d| u32::from(d < 0.0));
+    x | y << 1 | z << 2
 }
