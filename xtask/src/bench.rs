@@ -193,9 +193,40 @@ pub(crate) fn strahl_binary() -> Result<PathBuf> {
 /// The program that is measured on scenes.
 static INSTALLED: OnceLock<PathBuf> = OnceLock::new();
 
+/// Which program is measured on scenes.
+#[derive(Debug, Default)]
+pub(crate) enum Measured {
+    /// A build with the recorded profile, as `scripts/install` makes it.
+    #[default]
+    Profiled,
+    /// A build without it.
+    Plain,
+    /// One that is installed.
+    Program(PathBuf),
+}
+
+impl Measured {
+    /// Builds the program if need be; [`installed_strahl`] returns it then. Called at most once.
+    pub(crate) fn prepare(&self) -> Result<()> {
+        match self {
+            Self::Profiled => install(&crate::profiled::build_with_profile()?),
+            Self::Plain => {
+                build_strahl()?;
+                install(&strahl_binary()?)
+            }
+            Self::Program(program) => {
+                let program = program
+                    .canonicalize()
+                    .with_context(|| format!("cannot find the program {}", program.display()))?;
+                use_installed(program)
+            }
+        }
+    }
+}
+
 /// Copies a build of the program, as `cargo install` does, and [uses](use_installed) the copy. A program as the linker has written it takes up to 5 % more
 /// processor time on small pictures, because the system keeps its file in smaller pieces.
-pub(crate) fn install(program: &Path) -> Result<()> {
+fn install(program: &Path) -> Result<()> {
     let copy = program.with_file_name("strahl-installed");
     // A new file: the old one would keep its pieces.
     if copy.exists() {
@@ -206,7 +237,7 @@ pub(crate) fn install(program: &Path) -> Result<()> {
 }
 
 /// Makes [`installed_strahl`] return an installed program. Called at most once, as is [`install`].
-pub(crate) fn use_installed(program: PathBuf) -> Result<()> {
+fn use_installed(program: PathBuf) -> Result<()> {
     if INSTALLED.set(program).is_err() {
         bail!("an installed program was chosen before");
     }

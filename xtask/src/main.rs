@@ -40,7 +40,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   rings, tree and lattice are generated if FOLDER lacks them
   bench csg [--runs N] [--threads N] [--only PART]
                                   trace times of generated CSG scenes against POV-Ray
-  bench objects [--runs N] [--size 640x480] [--only PART]
+  bench objects [--plain | --program STRAHL] [--runs N] [--size 640x480] [--only PART]
                                   processor time of each kind of object against POV-Ray; time and memory of
                                   free-form surfaces against triangles of the size of a pixel
   bench parse [--runs N] [--megabytes N]

@@ -6,9 +6,9 @@ mod scenes;
 mod shapes;
 
 use crate::arguments::Arguments;
-use crate::bench::{build_strahl, geometric_mean, median, strahl_binary};
+use crate::bench::{Measured, geometric_mean, median};
 use crate::bench_scenes::measure::{Program, Timed, render};
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use scenes::Scene;
 pub(crate) use scenes::{FINEST, teapot};
 use std::path::Path;
@@ -21,12 +21,15 @@ const MOST: f64 = 300.0;
 /// `cargo xtask bench objects`: prints and saves a table, one row per scene.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let (mut runs, mut size, mut only) = (5, (640, 480), "");
+    let mut measured = Measured::default();
     let mut args = Arguments::new(args);
     while let Some(option) = args.option() {
         match option {
             "--runs" => runs = args.number()?,
             "--size" => size = crate::compare_pov::size(args.value()?)?,
             "--only" => only = args.value()?,
+            "--plain" => measured = Measured::Plain,
+            "--program" => measured = Measured::Program(args.value()?.into()),
             "--one" => return limits::one(&mut args),
             other => bail!("unknown option {other}"),
         }
@@ -34,12 +37,8 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     if runs == 0 {
         bail!("--runs must be at least 1");
     }
-    build_strahl()?;
-    let folder = strahl_binary()?
-        .ancestors()
-        .nth(2)
-        .context("strahl is not in target/release")?
-        .join("bench-objects");
+    measured.prepare()?;
+    let folder = crate::profiled::outputs()?.join("bench-objects");
     std::fs::create_dir_all(&folder)?;
     let (width, height) = size;
     let mut table = format!(

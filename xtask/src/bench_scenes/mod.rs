@@ -5,8 +5,9 @@ pub(crate) mod measure;
 mod report;
 
 use crate::arguments::Arguments;
+use crate::bench::Measured;
 use crate::compare_pov::{find_scenes, picture, size};
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use measure::{Program, Timed};
 use std::path::{Path, PathBuf};
 
@@ -35,10 +36,7 @@ pub(crate) struct Options {
     antialiased: bool,
     /// Whether to render converged pictures as well.
     errors: bool,
-    /// Whether to measure a build without the recorded profile.
-    plain: bool,
-    /// An installed program to measure, instead of one that is built.
-    program: Option<PathBuf>,
+    measured: Measured,
     /// Scenes that take POV-Ray more seconds than this are left out.
     most: f64,
 }
@@ -54,8 +52,7 @@ impl Options {
             only: None,
             antialiased: false,
             errors: false,
-            plain: false,
-            program: None,
+            measured: Measured::default(),
             most: 120.0,
         };
         let mut args = Arguments::new(args);
@@ -68,8 +65,8 @@ impl Options {
                 "--only" => options.only = Some(args.value()?.to_owned()),
                 "--out" => options.out = PathBuf::from(args.value()?),
                 "--aa" => options.antialiased = true,
-                "--plain" => options.plain = true,
-                "--program" => options.program = Some(PathBuf::from(args.value()?)),
+                "--plain" => options.measured = Measured::Plain,
+                "--program" => options.measured = Measured::Program(args.value()?.into()),
                 "--errors" => (options.antialiased, options.errors) = (true, true),
                 other if other.starts_with('-') => bail!("unknown option {other}"),
                 folder => options.folder = PathBuf::from(folder),
@@ -102,19 +99,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     }
     scenes.truncate(options.limit);
     std::fs::create_dir_all(&options.out)?;
-    match &options.program {
-        Some(program) => {
-            let program = program
-                .canonicalize()
-                .with_context(|| format!("cannot find the program {}", program.display()))?;
-            crate::bench::use_installed(program)?;
-        }
-        None if options.plain => {
-            crate::bench::build_strahl()?;
-            crate::bench::install(&crate::bench::strahl_binary()?)?;
-        }
-        None => crate::bench::install(&crate::profiled::build_with_profile()?)?,
-    }
+    options.measured.prepare()?;
     let mut rows = vec![];
     let mut left_out = 0;
     for (number, scene) in scenes.iter().enumerate() {
