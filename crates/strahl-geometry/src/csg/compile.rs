@@ -222,7 +222,10 @@ impl Compiler {
         let (shape, seen_through) = self.without_bounds(shape, context.map.as_ref());
         let leaf = count(self.leaves.len(), "number of leaves of the CSG tree")?;
         self.add_node(Kind::Leaf(leaf), context.parent)?;
-        let baked = context.map.and_then(|map| shape.baked(&map));
+        let baked = context
+            .map
+            .filter(|_| !is_large(&shape))
+            .and_then(|map| shape.baked(&map));
         let map = if baked.is_some() { None } else { context.map };
         let shape = baked.unwrap_or(shape);
         let solid = shape.as_solid();
@@ -484,4 +487,16 @@ fn count(n: usize, what: &'static str) -> Result<u32, GeometryError> {
         expected: "less than 2^32",
         found: n as f64,
     })
+}
+
+/// Whether a shape is a mesh that is better kept in its own space than copied: objects may share it, and with it the tree over its triangles.
+fn is_large(shape: &Shape) -> bool {
+    /// A copy of as many triangles takes less than a tenth of a millisecond.
+    const COPIED: u32 = 1000;
+    let mesh = match shape {
+        Shape::TriangleMesh(mesh) => mesh,
+        Shape::Brep(brep) => brep.mesh(),
+        _ => return false,
+    };
+    mesh.triangle_count() > COPIED
 }

@@ -1,5 +1,6 @@
 //! The compiled tree: flat lists of its nodes, operands and leaves, and what is known of them.
 
+use super::clipped::Clipped;
 use super::convex::Convex;
 use super::leaf::Leaf;
 use super::node::{Kind, Node};
@@ -45,6 +46,8 @@ pub struct Csg {
     small: Option<Box<Small>>,
     /// Its operands, if it is a small intersection of convex solids and of complements of such, or a small union of convex solids.
     convex: Option<Box<Convex>>,
+    /// Its parts, if it is an open surface that convex solids clip.
+    clipped: Option<Clipped>,
     /// Whether the rays of a packet search it together.
     together: bool,
 }
@@ -99,7 +102,13 @@ impl Csg {
         let mut numbers = leaves.iter().map(|leaf| leaf.first_element).zip(0..);
         let one_each =
             numbers.all(|(first, index)| first == index) && elements as usize == leaves.len();
+        let clipped = if bounds.is_empty() && !closed {
+            Clipped::of(&nodes, &leaves)
+        } else {
+            None
+        };
         Self {
+            clipped,
             one_each,
             small: small.map(Box::new),
             convex: convex.map(Box::new),
@@ -206,6 +215,11 @@ impl Csg {
     /// Its operands, if it is a small intersection of convex solids and of complements of such.
     pub(super) fn convex(&self) -> Option<&Convex> {
         self.convex.as_deref()
+    }
+
+    /// Its parts, if it is an open surface that convex solids clip.
+    pub(super) fn clipped(&self) -> Option<&Clipped> {
+        self.clipped.as_ref()
     }
 
     /// The tree as a table, if it is a small merge of leaves that lines cross at most twice.

@@ -84,7 +84,7 @@ impl Leaf {
         self.placement.as_ref().map(|placement| &placement.map)
     }
 
-    fn ray_to_object(&self, ray: &Ray) -> Ray {
+    pub(super) fn ray_to_object(&self, ray: &Ray) -> Ray {
         self.placement
             .as_ref()
             .map_or(*ray, |placement| placement.map.ray_to_object(ray))
@@ -271,19 +271,16 @@ impl Leaf {
     fn list_hits(
         &self,
         inner: &Ray,
-        mut range: Interval,
+        range: Interval,
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
-        while let Some(hit) = self.shape.closest_hit(inner, range, from, scratch) {
-            if !range.accepts(hit.t) {
-                // A violation of the contract; without progress this loop would not end.
-                return;
-            }
-            range.min = hit.t;
-            out.list.push(Crossing::new(hit, 0.0, Side::Inner));
-        }
+        let mut hits = scratch.take_hits();
+        self.shape.all_hits(inner, range, from, scratch, &mut hits);
+        let crossings = hits.iter().map(|hit| Crossing::new(*hit, 0.0, Side::Inner));
+        out.list.extend(crossings);
+        scratch.give_hits(hits);
     }
 
     /// See [`Primitive::texture_uv`].

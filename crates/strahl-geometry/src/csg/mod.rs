@@ -15,9 +15,11 @@
 //! * `packet` searches small trees of `convex` solids for four rays side by side, which `four_stays` intersects with the leaves;
 //!   `packet_tree` tests boxes and leaves of larger ones and of merges for the rays of a packet, `together` searches them
 //!   ray by ray, and `lines` combines their leaves.
+//! * `clipped` knows open surfaces that convex solids clip.
 //! * `solid` makes a shape of it all: it chooses the search.
 
 mod boxes;
+mod clipped;
 mod compile;
 mod compiled;
 mod convex;

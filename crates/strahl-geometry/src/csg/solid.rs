@@ -89,6 +89,10 @@ impl Primitive for Csg {
             if let Answer::Certain(hit) = answer {
                 return hit;
             }
+        } else if let Some(clipped) = self.clipped()
+            && let Answer::Certain(hit) = clipped.first_visible(self, ray, range, from, scratch)
+        {
+            return hit;
         }
         let mut list = scratch.take();
         Evaluation::run(self, ray, range, from, scratch, &mut list);

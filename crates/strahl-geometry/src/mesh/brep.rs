@@ -6,7 +6,7 @@ use crate::{
     SurfacePoint,
 };
 use std::sync::Arc;
-use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
+use strahl_accel::{Accelerator, TraversalStats, Visitor};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
@@ -24,8 +24,6 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 #[derive(Clone, Debug)]
 pub struct Brep {
     mesh: TriangleMesh,
-    /// Over the triangles, relative to the mesh's anchor.
-    tree: Bvh2,
 }
 
 /// The direction of the ray that [`Solid::contains`] uses: not parallel to anything that occurs in scenes.
@@ -48,11 +46,9 @@ impl Brep {
         } else {
             mesh
         };
-        let boxes: Vec<_> = (0..mesh.triangle_count())
-            .map(|i| Aabb::from_points(mesh.local_corners(i)))
-            .collect();
-        let tree = Bvh2::build(&boxes);
-        Ok(Self { mesh, tree })
+        // Not only when the first ray comes.
+        mesh.tree();
+        Ok(Self { mesh })
     }
 
     /// The solid within polygons that share their edges. Corners are rounded to f32 (see [`MeshData::from_f64`]) and welded where
@@ -94,7 +90,8 @@ impl Brep {
             skipped: from.map(|surface| surface.element),
             look,
         };
-        self.tree
+        self.mesh
+            .tree()
             .traverse(&local, range, &mut passes, &mut TraversalStats::default());
     }
 
@@ -299,7 +296,8 @@ impl Solid for Brep {
         };
         // The triangles that the point may lie on are wanted too.
         let range = Interval::new(-2.0 * near, f64::INFINITY);
-        self.tree
+        self.mesh
+            .tree()
             .traverse(&ray, range, &mut count, &mut TraversalStats::default());
         count.on_surface || count.winding > 0
     }

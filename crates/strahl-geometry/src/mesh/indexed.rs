@@ -1,7 +1,8 @@
 use super::shear::{RayShear, intersect_sheared};
 use super::triangle::{any_normal, apply_uvs, combine, front_normal, smooth_normal};
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::error::ROUNDOFF;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
@@ -63,8 +64,9 @@ impl MeshData {
 /// are the barycentric ones. Normals are treated as those of a [`SmoothTriangle`](super::SmoothTriangle). Triangles without
 /// area are allowed, but never hit.
 ///
-/// Vertices are f32 relative to an f64 anchor; every computation is f64. [`Primitive::closest_hit`] looks at all triangles:
-/// a renderer puts the triangles into its own accelerator and asks [`TriangleMesh::hit_element`].
+/// Vertices are f32 relative to an f64 anchor; every computation is f64. A renderer puts the triangles into its own accelerator and
+/// asks [`TriangleMesh::hit_element`]. [`Primitive::closest_hit`], for meshes that are parts of other objects, builds a tree over the triangles
+/// when it is called first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriangleMesh {
     anchor: DVec3,
@@ -81,6 +83,18 @@ pub struct TriangleMesh {
     flipped: bool,
     /// Triangles whose last two vertices are exchanged against the order in which they were written; `None` if there are none.
     exchanged: Option<Box<[bool]>>,
+    tree: LazyTree,
+}
+
+/// A tree over the triangles of a mesh, relative to its anchor, built when it is first asked for.
+#[derive(Clone, Debug, Default)]
+struct LazyTree(OnceLock<Arc<Bvh2>>);
+
+/// Meshes are equal whether they have been asked for their trees or not.
+impl PartialEq for LazyTree {
+    fn eq(&self, _other: &Self) -> bool {
+        true
+    }
 }
 
 impl MeshData {
@@ -179,6 +193,7 @@ impl TriangleMesh {
             face_continues: data.face_continues.map(Into::into),
             flipped: false,
             exchanged: None,
+            tree: LazyTree::default(),
         })
     }
 
@@ -367,6 +382,9 @@ impl TriangleMesh {
     /// A vertex gets too large for f32.
     pub fn transformed(&self, map: &Transform) -> Result<Self, GeometryError> {
         let mut copy = self.clone();
+        if !map.is_translation() {
+            copy.tree = LazyTree::default();
+        }
         copy.flipped = self.flipped != map.mirrors();
         if map.is_translation() {
             copy.anchor = map.point_to_world(self.anchor);
@@ -407,6 +425,36 @@ impl TriangleMesh {
         self
     }
 
+    /// The tree over the triangles, relative to the anchor.
+    pub(super) fn tree(&self) -> &Bvh2 {
+        self.tree.0.get_or_init(|| {
+            let boxes: Vec<_> = (0..self.triangle_count())
+                .map(|i| Aabb::from_points(self.local_corners(i)))
+                .collect();
+            Arc::new(Bvh2::build(&boxes))
+        })
+    }
+
+    /// Passes the hits of a ray with the triangles, in any order, to `look`, which returns the `t` up to which further ones matter.
+    fn walk<F: FnMut(PrimHit, f64) -> f64>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        look: F,
+    ) {
+        let local = Ray::new(ray.origin - self.anchor, ray.direction);
+        let mut hits = Hits {
+            mesh: self,
+            shear: RayShear::new(ray).relative_to(self.anchor),
+            range,
+            skipped: from.map(|surface| surface.element),
+            look,
+        };
+        self.tree()
+            .traverse(&local, range, &mut hits, &mut TraversalStats::default());
+    }
+
     #[inline]
     fn triangle(&self, triangle: u32) -> [u32; 3] {
         let found = self.indices.get(triangle as usize);
@@ -424,6 +472,29 @@ impl TriangleMesh {
     #[inline]
     pub(crate) fn has_area(&self, triangle: u32) -> bool {
         span_area(self.local_corners(triangle))
+    }
+}
+
+/// Tests triangles, and calls `look` with each hit.
+struct Hits<'a, F> {
+    mesh: &'a TriangleMesh,
+    /// Relative to the mesh's anchor.
+    shear: RayShear,
+    range: Interval,
+    skipped: Option<u32>,
+    look: F,
+}
+
+impl<F: FnMut(PrimHit, f64) -> f64> Visitor for Hits<'_, F> {
+    #[inline]
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        if self.skipped == Some(id) {
+            return t_max;
+        }
+        match self.mesh.hit_local(id, &self.shear, self.range) {
+            Some(hit) => (self.look)(hit, t_max),
+            None => t_max,
+        }
     }
 }
 
@@ -464,16 +535,16 @@ impl Primitive for TriangleMesh {
         from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let shear = RayShear::new(ray).relative_to(self.anchor);
-        let start = from.map(|surface| surface.element);
         let mut nearest: Option<PrimHit> = None;
-        for triangle in (0..self.triangle_count()).filter(|&i| Some(i) != start) {
-            let range = range.with_max(nearest.map_or(range.max, |hit| hit.t));
-            let hit = self.hit_local(triangle, &shear, range);
-            if let Some(hit) = hit.filter(|hit| nearest.is_none_or(|best| hit.t < best.t)) {
+        self.walk(ray, range, from, |hit, t_max| {
+            let key = |hit: &PrimHit| (hit.t, hit.surface.element);
+            if nearest.is_none_or(|best| key(&hit) < key(&best)) {
                 nearest = Some(hit);
+                hit.t
+            } else {
+                t_max
             }
-        }
+        });
         nearest
     }
 
@@ -484,11 +555,43 @@ impl Primitive for TriangleMesh {
         from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> bool {
-        let shear = RayShear::new(ray).relative_to(self.anchor);
-        let start = from.map(|surface| surface.element);
-        (0..self.triangle_count())
-            .filter(|&i| Some(i) != start)
-            .any(|i| self.hit_local(i, &shear, range).is_some())
+        let mut found = false;
+        self.walk(ray, range, from, |_, _| {
+            found = true;
+            f64::NEG_INFINITY
+        });
+        found
+    }
+
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        let before = out.len();
+        self.walk(ray, range, from, |hit, t_max| {
+            out.push(hit);
+            t_max
+        });
+        let found = &mut out[before..];
+        found.sort_unstable_by(|a, b| {
+            let elements = a.surface.element.cmp(&b.surface.element);
+            a.t.total_cmp(&b.t).then(elements)
+        });
+        // Of several at one place the first is met.
+        let mut last = f64::NEG_INFINITY;
+        let mut kept = before;
+        for index in before..out.len() {
+            if out[index].t > last {
+                last = out[index].t;
+                out[kept] = out[index];
+                kept += 1;
+            }
+        }
+        out.truncate(kept);
     }
 
     fn surface_at(&self, _ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -546,6 +649,7 @@ mod tests {
     use super::*;
     use crate::conformance::Random;
     use crate::mesh::samples::{Unbaked, cube, torus};
+    use crate::primitive::one_by_one;
 
     fn closest(mesh: &impl Primitive, ray: &Ray) -> Option<(PrimHit, SurfacePoint)> {
         let hit = mesh.closest_hit(ray, Interval::FORWARD, None, &mut Scratch::default())?;
@@ -645,6 +749,45 @@ mod tests {
         assert_eq!(next.map(|hit| hit.t), Some(2.0));
         assert_eq!(mesh.bounds(), Aabb::new(DVec3::splat(-1.0), DVec3::ONE));
         assert_eq!((mesh.triangle_count(), mesh.degenerate_count()), (12, 0));
+    }
+
+    #[test]
+    fn the_tree_finds_what_a_look_at_every_triangle_finds() {
+        let far = Transform::translate(DVec3::new(900.0, -20.0, 3.0));
+        let ring = TriangleMesh::try_new(torus(24, 16, 1.0, 0.4)).expect("a torus");
+        let moved = ring.transformed(&far).expect("a shift");
+        let turned = ring
+            .transformed(&Transform::rotate(DVec3::X, 1.0))
+            .expect("a turn");
+        let mut random = Random::new(11);
+        let mut met = 0;
+        for mesh in [ring, moved, turned] {
+            let center = mesh.bounds().center();
+            for _ in 0..3000 {
+                let ray = Ray::new(center + random.cube() * 2.0, random.direction());
+                let range = Interval::new(random.between(-1.0, 0.5), random.between(0.5, 4.0));
+                let from = (random.below(2) == 0).then(|| SurfaceId {
+                    element: random.below(u64::from(mesh.triangle_count())) as u32,
+                    facet: 0,
+                });
+                let shear = RayShear::new(&ray);
+                let nearest = (0..mesh.triangle_count())
+                    .filter(|element| from.is_none_or(|from| from.element != *element))
+                    .filter_map(|element| mesh.hit_element(element, &shear, range))
+                    .min_by(|a, b| a.t.total_cmp(&b.t));
+                let mut scratch = Scratch::default();
+                let found = mesh.closest_hit(&ray, range, from, &mut scratch);
+                assert_eq!(found, nearest, "{ray:?}");
+                let (mut all, mut alone) = (vec![], vec![]);
+                mesh.all_hits(&ray, range, from, &mut scratch, &mut all);
+                one_by_one(&mesh, &ray, range, from, &mut scratch, &mut alone);
+                assert_eq!(all, alone, "{ray:?}");
+                let any = mesh.any_hit(&ray, range, from, &mut scratch);
+                assert_eq!(any, nearest.is_some(), "{ray:?}");
+                met += u32::from(any);
+            }
+        }
+        assert!(met > 1000, "{met}");
     }
 
     #[test]

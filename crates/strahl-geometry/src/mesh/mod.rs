@@ -18,7 +18,7 @@ mod polygon;
 #[cfg(test)]
 mod polygon_tests;
 #[cfg(test)]
-mod samples;
+pub(crate) mod samples;
 mod shear;
 mod triangle;
 mod triangulate;

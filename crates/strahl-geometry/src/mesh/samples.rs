@@ -76,7 +76,7 @@ pub(super) fn icosphere(levels: u32, noise: f64) -> MeshData {
 }
 
 /// A torus about the z axis, outward.
-pub(super) fn torus(rings: u32, sides: u32, major: f64, minor: f64) -> MeshData {
+pub(crate) fn torus(rings: u32, sides: u32, major: f64, minor: f64) -> MeshData {
     let turn = |i: u32, n: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
     let vertices: Vec<_> = (0..rings * sides)
         .map(|i| {
