@@ -1002,8 +1002,9 @@ fn each_material_from_outside_has_its_group() {
 
 #[test]
 fn groups_hold_groups() {
+    let larger = LARGE.replace("19", "599");
     let text = format!(
-        "{LARGE} #declare Two = union {{ object {{ Large }} object {{ Large translate y }} #for (I, 0, 9) sphere {{ I * z, 1 }} #end }} object {{ Two }} object {{ Two translate z }} object {{ Large translate -y }}"
+        "{larger} #declare Two = union {{ object {{ Large }} object {{ Large translate y }} #for (I, 0, 9) sphere {{ I * z, 1 }} #end }} object {{ Two }} object {{ Two translate z }} object {{ Large translate -y }}"
     );
     let (scene, _) = scene(&text);
     assert_eq!(scene.groups.len(), 2);
@@ -1017,6 +1018,39 @@ fn groups_hold_groups() {
     let mut instances = [inner(0), inner(1)];
     instances.sort_unstable();
     assert_eq!(instances, [0, 2]);
+}
+
+/// Halves within halves: eleven levels of instances would cost rays ten times as much as one group of balls.
+#[test]
+fn small_objects_are_copied_into_the_groups_that_use_them() {
+    let tower = |balls: u32| {
+        let text = format!(
+            "#declare O = union {{ #for (I, 1, {balls}) sphere {{ I * x, 0.1 }} #end }}
+             #for (I, 0, 2) #declare O = union {{ object {{ O }} object {{ O translate y * pow(2, I) }} }} #end
+             object {{ O }} object {{ O translate z }} #declare M = mesh {{ #for (I, 1, 99) triangle {{ 0, x, I * y }} #end }}
+             #declare U = union {{ object {{ M }} object {{ M translate x }} sphere {{ 0, 1 }} #for (I, 1, 9) sphere {{ I * y, 1 }} #end }}
+             object {{ U }} object {{ U translate z }}"
+        );
+        let (scene, _) = scene(&text);
+        let (mut spheres, mut instances) = (0, 0);
+        for group in &scene.groups {
+            let mut waiting: Vec<_> = group.objects.0.iter().collect();
+            while let Some(object) = waiting.pop() {
+                match &object.kind {
+                    ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
+                    ObjectKind::Shape(Shape::Sphere(_)) => spheres += 1,
+                    ObjectKind::Shape(_) => {}
+                    ObjectKind::Instance(_) => instances += 1,
+                    ObjectKind::Light(_) => panic!("a light is no part"),
+                }
+            }
+        }
+        (scene.groups.len(), spheres, instances)
+    };
+    // Eight times twenty balls in one group; ten of the object that shares a mesh, in another; the mesh.
+    assert_eq!(tower(20), (3, 8 * 20 + 10, 2));
+    // Too many to be copied: the group has eight instances of another.
+    assert_eq!(tower(600), (4, 600 + 10, 8 + 2));
 }
 
 #[test]

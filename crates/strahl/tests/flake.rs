@@ -59,8 +59,9 @@ fn a_flake_of_nested_instances_is_stored_small_and_looks_as_if_written_out() {
          #declare Flake = Grown({LAST})"
     ));
     let size = |scene: &Scene| format!("{scene:?}").len();
+    // One generation less, because the smaller ones are copied into its group.
     assert!(
-        size(&nested) * 20 < size(&flat),
+        size(&nested) * 8 < size(&flat),
         "{} {}",
         size(&nested),
         size(&flat)

@@ -4,7 +4,8 @@
 //! an index into the declared objects ([`Shared`]), not yet into the scene's groups. At the end, [`link`] turns them into groups:
 //! one for each declared object and each material that its parts inherit from the use. An object that is used only once replaces
 //! its instance, so that a scene built step by step (`#declare All = union { object { All } ... }`) does not become a tower of
-//! instances. Operations other than unions need all their parts: within them the last use of a declared object takes its parts,
+//! instances. A small object that other declared objects use is copied into their groups: levels of instances within each other cost rays
+//! more than a larger group, most of all where they overlap. Operations other than unions need all their parts: within them the last use of a declared object takes its parts,
 //! and earlier uses copy them.
 
 use super::bounds::own_extent;
@@ -27,6 +28,12 @@ const SMALL: u64 = 8;
 
 /// After this many uses, an object of several parts is shared.
 const OFTEN: u32 = 16;
+
+/// A declared object with at most this many parts, all those of other declared objects included, is copied where a group uses it ...
+const COPIED: u64 = 512;
+
+/// ... until all such copies of a scene together have as many parts.
+const MOST_COPIED: u64 = 1 << 16;
 
 /// A mesh of up to this many triangles counts as small.
 const FEW_TRIANGLES: u64 = 64;
@@ -284,6 +291,19 @@ struct Linker {
     whole: Vec<u64>,
     /// How often the parts of each declared object are still needed, for variants and for such operations.
     open: Vec<u64>,
+    /// The number of parts that have been copied into groups.
+    copied: u64,
+}
+
+/// A place in which instances are replaced.
+#[derive(Clone, Copy)]
+struct Place {
+    /// Whether an operation around it needs all parts.
+    whole: bool,
+    /// Whether it is in a group.
+    in_group: bool,
+    /// Whether it is in a copy: then an object that is used once may be met several times.
+    copied: bool,
 }
 
 // The pointers are only keys. `variants` keeps the materials alive; the pointers are never dereferenced.
@@ -299,6 +319,7 @@ impl Linker {
             known: HashMap::new(),
             whole: open.clone(),
             open,
+            copied: 0,
         }
     }
 
@@ -351,7 +372,7 @@ impl Linker {
         let mut objects = std::mem::take(&mut scene.objects.0);
         let mut waiting = vec![];
         for object in &mut objects {
-            self.replace(object, None, scene, &mut waiting);
+            self.replace(object, None, false, scene, &mut waiting);
         }
         scene.objects.0 = objects;
         while let Some((group, variant)) = waiting.pop() {
@@ -360,7 +381,7 @@ impl Linker {
             };
             let mut object = Object::new(self.kind(id));
             object.material = material;
-            self.replace(&mut object, None, scene, &mut waiting);
+            self.replace(&mut object, None, true, scene, &mut waiting);
             if let Some(group) = scene.groups.get_mut(group) {
                 object.name = group.name.clone();
                 group.objects.0.push(object);
@@ -412,8 +433,35 @@ impl Linker {
         })
     }
 
-    /// The kind of a declared object; moved out at its last use, copied otherwise.
+    /// Whether a declared object has so few parts that its uses may be copies.
+    fn is_small(&self, id: u32) -> bool {
+        let declared = self.objects.get(id as usize).and_then(Option::as_ref);
+        declared.is_some_and(|declared| declared.tally.expanded <= COPIED)
+    }
+
+    /// Takes note of a copy within a group, unless there are too many parts or the object has a mesh, whose triangles copies would not share.
+    fn copies(&mut self, id: u32) -> bool {
+        let declared = self.objects.get(id as usize).and_then(Option::as_ref);
+        let Some(Tally {
+            parts,
+            elements,
+            expanded,
+            ..
+        }) = declared.map(|declared| declared.tally)
+        else {
+            return false;
+        };
+        let may = expanded <= COPIED
+            && elements <= FEW_TRIANGLES + parts
+            && self.copied + expanded <= MOST_COPIED;
+        self.copied += if may { expanded } else { 0 };
+        may
+    }
+
+    /// The kind of a declared object; moved out at its last use, copied otherwise. Small objects are always copied, because copies of others may
+    /// use them.
     fn kind(&mut self, id: u32) -> ObjectKind {
+        let is_small = self.is_small(id);
         let nothing = Object::csg(CsgOp::Union, vec![]).kind;
         let (Some(slot), Some(open)) = (
             self.objects.get_mut(id as usize),
@@ -422,7 +470,7 @@ impl Linker {
             return nothing;
         };
         *open = open.saturating_sub(1);
-        let taken = if *open == 0 {
+        let taken = if *open == 0 && !is_small {
             slot.take()
         } else {
             slot.clone()
@@ -434,25 +482,36 @@ impl Linker {
         }
     }
 
-    /// Replaces the instances within an object by instances of the scene's groups, or by objects that are used only here. New
-    /// groups are queued to be filled.
+    /// Replaces the instances within an object by instances of the scene's groups, or by objects that are used only here or are copied into a
+    /// group. New groups are queued to be filled.
     fn replace(
         &mut self,
         object: &mut Object,
         inherited: Option<Arc<Material>>,
+        in_group: bool,
         scene: &mut Scene,
         new: &mut Vec<(usize, usize)>,
     ) {
-        let mut waiting = vec![(object, inherited, false)];
-        while let Some((object, inherited, whole)) = waiting.pop() {
+        let place = Place {
+            whole: false,
+            in_group,
+            copied: false,
+        };
+        let mut waiting = vec![(object, inherited, place)];
+        while let Some((object, inherited, mut place)) = waiting.pop() {
             let material = object.material.clone().or(inherited);
             while let ObjectKind::Instance(id) = object.kind {
-                if whole {
+                if place.whole {
+                    object.kind = self.kind(id.0);
+                    continue;
+                }
+                if place.in_group && self.copies(id.0) {
+                    place.copied = true;
                     object.kind = self.kind(id.0);
                     continue;
                 }
                 let variant = self.variant(id.0, material.clone());
-                if self.uses.get(variant).is_some_and(|uses| *uses > 1) {
+                if place.copied || self.uses.get(variant).is_some_and(|uses| *uses > 1) {
                     let id = self.group(variant, &object.name, scene, new);
                     object.kind = ObjectKind::Instance(id);
                     break;
@@ -460,9 +519,9 @@ impl Linker {
                 object.kind = self.kind(id.0);
             }
             if let ObjectKind::Csg { op, children } = &mut object.kind {
-                let whole = whole || !op.is_union();
+                place.whole |= !op.is_union();
                 let children = children.0.iter_mut().rev();
-                waiting.extend(children.map(|child| (child, material.clone(), whole)));
+                waiting.extend(children.map(|child| (child, material.clone(), place)));
             }
         }
     }
