@@ -1,5 +1,5 @@
 // In the style of Jmol's exports, written for strahl: the picture's pixels are the unit of length, y goes down, every object is clipped by a box
-// that reaches two thousand million units far, and surfaces let light through.
+// that reaches two thousand million units far and cuts off the front of the surface, which lets light through.
 #declare Width = 320;
 #declare Height = 240;
 #declare noShadows = true;
@@ -28,7 +28,7 @@ light_source { <-174.07767,-174.07767, -435.19412>  rgb <0.6,0.6,0.6> }
   no_shadow
  #end
 #end
-#declare slabZ = 0;
+#declare slabZ = 1062;
 #declare depthZ = 2147483647;
 #macro clip()
   clipped_by { box {<0,0,slabZ>,<Width,Height,depthZ>} }

@@ -3,7 +3,7 @@
 use super::inside::{placed, solid};
 use std::sync::Arc;
 use strahl_geometry::{Bounded, Csg, Primitive, Shape, Solid};
-use strahl_math::Transform;
+use strahl_math::{DVec3, Transform};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
 /// One bound, in the space of the group.
@@ -29,6 +29,19 @@ impl Bound {
             && is_small(object)
             && solid(object, &placed(object, to_group))
                 .is_some_and(|tree| tree.lies_within(&self.solid))
+    }
+
+    /// Whether a shape certainly lies within the bound, nowhere near its surface; `to_group` is from the shape's own space.
+    pub(super) fn holds(&self, shape: &Shape, to_group: &Transform) -> bool {
+        /// Far above rounding errors, relative to the size and to the coordinates of the shape.
+        const NEAR: f64 = 1e-6;
+        if !self.convex {
+            return false;
+        }
+        let bounds = to_group.bounds_to_world(&shape.bounds());
+        let near = DVec3::splat(NEAR * (bounds.size().max_element() + bounds.max_abs()));
+        bounds.is_bounded()
+            && (bounds.padded(near).corners().into_iter()).all(|corner| self.solid.contains(corner))
     }
 
     /// Whether the bound certainly surrounds a shape.

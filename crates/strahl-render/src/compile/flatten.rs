@@ -124,6 +124,24 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
     Err(pass.errors)
 }
 
+/// The object that is clipped, if it is a shape that lies within all that clips it: as programs write it that clip everything by the limits of what
+/// they show.
+fn unclipped<'a>(children: &'a Children, todo: &Todo<'a>) -> Option<Todo<'a>> {
+    let (object, clips) = children.0.split_first()?;
+    let ObjectKind::Shape(shape) = &object.kind else {
+        return None;
+    };
+    let whole = Todo::new(object, Some(todo));
+    // Meshes that are moved are copied, unless they are parts of trees.
+    if matches!(shape, Shape::TriangleMesh(_)) && !whole.transform.is_identity() {
+        return None;
+    }
+    let holds = |clip: &Object| {
+        Bound::of(clip, &todo.transform).is_some_and(|clip| clip.holds(shape, &whole.transform))
+    };
+    (!clips.is_empty() && clips.iter().all(holds)).then_some(whole)
+}
+
 pub(super) struct Pass {
     pub(super) flat: Flat,
     pub(super) errors: Vec<Diagnostic>,
@@ -151,6 +169,10 @@ impl Pass {
                     let inner = self.bounded_part(children, &mut todo);
                     waiting.extend(inner.map(|c| Todo::new(c, Some(&todo))));
                 }
+                ObjectKind::Csg {
+                    op: CsgOp::Clip,
+                    children,
+                } if let Some(whole) = unclipped(children, &todo) => waiting.push(whole),
                 ObjectKind::Csg { op, children } if op.is_union() => {
                     let children = self.union_parts(*op, children, &mut todo);
                     waiting.extend(children.rev().map(|c| Todo::new(c, Some(&todo))));
