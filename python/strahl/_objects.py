@@ -126,8 +126,9 @@ def _combined(operation: str, objects: Sequence[Object]) -> Object:
     return Object(_strahl.combined(operation, cores, caller()))
 
 
-def light_group(*things: Object | Light | Iterable[Object | Light], global_lights: bool = False, name: str | None = None) -> Object:
-    """Objects with lights that shine on them alone; with ``global_lights`` those of the scene do, too. All objects cast shadows."""
+def light_group(*things: Object | Light | Iterable[Object | Light], global_lights: bool = False, outer_lights: bool = False, name: str | None = None) -> Object:
+    """Objects with lights that shine on them alone; with ``global_lights`` those of the scene do, too, and with ``outer_lights`` those of the group
+    that this group is in. All objects cast shadows."""
     from strahl._lights import Light
 
     parts: list[_strahl.Object | tuple[_strahl.Light, Place]] = []
@@ -138,7 +139,8 @@ def light_group(*things: Object | Light | Iterable[Object | Light], global_light
             parts.append(thing._core)
         else:
             raise TypeError(f"a light group consists of objects and lights, not {type(thing).__name__}")
-    operation = "light group with global lights" if global_lights else "light group"
+    others = " and ".join(kind for kind, shine in (("global lights", global_lights), ("outer lights", outer_lights)) if shine)
+    operation = f"light group with {others}" if others else "light group"
     return with_look(_strahl.combined(operation, parts, caller()), None, name)
 
 

@@ -214,6 +214,12 @@ LIGHTS: dict[str, Callable[[], Any]] = {
         strahl.point_light((4, 8, -6), 0.3, clearance=1e-3),
         strahl.light_group([strahl.point_light((-4, 5, -6), (1, 0, 0), clearance=1e-3), strahl.sphere((1, 0.5, 0), 0.5, material=GREY)], global_lights=True),
     ],
+    "#declare G = light_group { light_source { <-4, 5, -6>, rgb <1, 0, 0> } sphere { <1, 0.5, 0>, 0.5 pigment { rgb 0.7 } } } light_group { light_source { <4, 8, -6>, 0.3 } G }": lambda: [
+        strahl.light_group(
+            strahl.point_light((4, 8, -6), 0.3, clearance=1e-3),
+            strahl.light_group(strahl.point_light((-4, 5, -6), (1, 0, 0), clearance=1e-3), strahl.sphere((1, 0.5, 0), 0.5, material=GREY), outer_lights=True),
+        ),
+    ],
 }  # fmt: skip
 
 

@@ -53,8 +53,12 @@ pub(crate) fn combined(
         "inverse" => CsgOp::Inverse,
         "clip" => CsgOp::Clip,
         "bound" => CsgOp::Bound,
-        "light group" | "light group with global lights" => CsgOp::LightGroup {
-            global_lights: operation != "light group",
+        "light group"
+        | "light group with global lights"
+        | "light group with outer lights"
+        | "light group with global lights and outer lights" => CsgOp::LightGroup {
+            global_lights: operation.contains("global lights"),
+            outer_lights: operation.contains("outer lights"),
         },
         other => return Err(errors::value(format!("there is no operation `{other}`"))),
     };

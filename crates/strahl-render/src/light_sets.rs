@@ -71,6 +71,9 @@ pub(crate) struct LightSetsDraft {
 #[derive(Debug, Default)]
 struct GroupDraft {
     global_lights: bool,
+    /// The set of the group around it, and whether the lights of that one shine on its objects too.
+    outer: u32,
+    outer_lights: bool,
     /// Numbers of its own lights among those found in objects.
     lights: Vec<u32>,
     /// Whether it has objects that are not bodies of its lights.
@@ -86,11 +89,20 @@ impl LightSetsDraft {
     pub(crate) fn open(&mut self, op: CsgOp, outer: u32) -> u32 {
         let global_lights = match (self.group(outer), op) {
             (Some(outer), _) => outer.global_lights,
-            (None, CsgOp::LightGroup { global_lights }) => global_lights,
+            (None, CsgOp::LightGroup { global_lights, .. }) => global_lights,
             (None, _) => true,
         };
+        let outer_lights = matches!(
+            op,
+            CsgOp::LightGroup {
+                outer_lights: true,
+                ..
+            }
+        );
         self.groups.push(GroupDraft {
             global_lights,
+            outer,
+            outer_lights,
             ..GroupDraft::default()
         });
         self.groups.len() as u32
@@ -146,6 +158,17 @@ impl LightSetsDraft {
         self.special |= lit != Lit::DEFAULT;
     }
 
+    /// The group around a group.
+    fn around(&self, group: &GroupDraft) -> Option<&GroupDraft> {
+        self.groups.get((group.outer as usize).checked_sub(1)?)
+    }
+
+    /// The group, or the nearest one around it that has lights.
+    fn lit_group<'a>(&'a self, group: &'a GroupDraft) -> Option<&'a GroupDraft> {
+        std::iter::successors(Some(group), |group| self.around(group))
+            .find(|g| !g.lights.is_empty())
+    }
+
     /// The finished lists, for a scene with `before` lights of its own, followed by `found` lights among the objects.
     pub(crate) fn finished(self, before: usize, found: usize) -> LightSets {
         if self.groups.is_empty() {
@@ -168,12 +191,22 @@ impl LightSetsDraft {
             } else {
                 vec![]
             };
-            let own = match group.lamps_of.map(|set| &self.groups[set as usize - 1]) {
-                None => Some(group),
-                Some(around) => around.has_objects.then_some(around),
+            let shining = match group.lamps_of.map(|set| &self.groups[set as usize - 1]) {
+                None if group.lights.is_empty() => [self.lit_group(group), None],
+                None => {
+                    let around = self.around(group).filter(|_| group.outer_lights);
+                    [
+                        Some(group),
+                        around.and_then(|around| self.lit_group(around)),
+                    ]
+                }
+                Some(around) => [around.has_objects.then_some(around), None],
             };
-            let own = own.iter().flat_map(|group| &group.lights);
-            list.extend(own.map(|light| light + before));
+            let lights = shining
+                .into_iter()
+                .flatten()
+                .flat_map(|group| &group.lights);
+            list.extend(lights.map(|light| light + before));
             list
         };
         let of_groups: Vec<Vec<u32>> = self.groups.iter().map(of_group).collect();

@@ -28,12 +28,15 @@ pub enum CsgOp {
     /// The first child, seen only by rays that hit each of the others somewhere. Meshes of triangles that are no operands are seen by
     /// all rays.
     Bound,
-    /// A union whose own lights (those that are children themselves, not parts of children) shine only on the other children. A
-    /// group within the group has its own lights only. Objects of all groups cast shadows.
+    /// A union whose own lights (those that are children themselves, not parts of children) shine only on the other children. Within a group, one
+    /// without lights has those of the group around it, and one with lights its own only, unless it takes `outer_lights`. Objects of all groups cast
+    /// shadows.
     LightGroup {
         /// Whether the lights that are in no group shine on the children too. Of groups within each other the outermost
         /// decides for all.
         global_lights: bool,
+        /// Whether the lights of the group around it shine on the children too: those of the nearest one that has lights.
+        outer_lights: bool,
     },
 }
 

@@ -27,10 +27,38 @@ fn a_group_of_lights_keeps_its_objects() {
     let ObjectKind::Csg { op, children } = &group.kind else {
         panic!("a group");
     };
-    let global_lights = false;
-    assert_eq!(*op, CsgOp::LightGroup { global_lights });
+    let expected = CsgOp::LightGroup {
+        global_lights: false,
+        outer_lights: false,
+    };
+    assert_eq!(*op, expected);
     assert_eq!((children.0.len(), messages.as_str()), (2, ""));
     assert!(group.transform.is_some());
+}
+
+#[test]
+fn declared_groups_of_lights_take_those_of_the_group_around_them() {
+    let (scene, messages) = scene(
+        "#declare G = light_group { light_source { y, rgb 1 } sphere { 0, 1 } union { sphere { 0, 1 } sphere { x, 1 } } }
+         #declare H = object { G }
+         light_group { light_source { x, rgb 1 } H light_group { light_source { z, rgb 1 } sphere { 0, 1 } } }",
+    );
+    assert_eq!(messages, "");
+    let mut outlines = vec![];
+    let mut waiting: Vec<_> = scene.objects.0.iter().map(|object| (object, 0)).collect();
+    while let Some((object, depth)) = waiting.pop() {
+        if let ObjectKind::Csg { op, children } = &object.kind {
+            if let CsgOp::LightGroup { outer_lights, .. } = op {
+                outlines.push((depth, children.0.len(), *outer_lights));
+            }
+            waiting.extend(children.0.iter().rev().map(|child| (child, depth + 1)));
+        }
+    }
+    // The union is in a group without lights, whatever the number of copies.
+    assert_eq!(
+        outlines,
+        [(0, 3, false), (1, 3, true), (2, 1, false), (1, 2, false)]
+    );
 }
 
 #[test]

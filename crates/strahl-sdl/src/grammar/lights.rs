@@ -70,7 +70,11 @@ pub(super) fn light_group(p: &mut Parser<'_>) -> PResult<Entity> {
             }
         }
         parts.retain(|part| !has_no_surface(part));
-        let mut entity = Entity::from(Object::csg(CsgOp::LightGroup { global_lights }, parts));
+        let op = CsgOp::LightGroup {
+            global_lights,
+            outer_lights: false,
+        };
+        let mut entity = Entity::from(Object::csg(op, parts));
         entity.object.span = p.span_at(place);
         p.modifiers(&mut entity)?;
         Ok(entity)

@@ -125,6 +125,30 @@ fn groups_of_lights_shine_on_their_own() {
             ),
         ),
         (
+            "declared within another",
+            format!(
+                "#declare G = light_group {{ light_source {{ <5, 3, -4>, rgb <0, 0, 1> }} {dice} }} light_group {{ {red} {ball} G }} {floor} {sun}"
+            ),
+        ),
+        (
+            "declared within two others",
+            format!(
+                "#declare G = light_group {{ light_source {{ <5, 3, -4>, rgb <0, 0, 1> }} {dice} }}
+                 #declare H = light_group {{ light_source {{ <-4, 3, -4>, rgb <0, 0.7, 0> }} union {{ object {{ G }} {ball} }} }}
+                 light_group {{ {red} {floor} light_group {{ H }} }} {sun}"
+            ),
+        ),
+        (
+            "declared together",
+            format!(
+                "#declare G = light_group {{ {red} {ball} light_group {{ light_source {{ <5, 3, -4>, rgb <0, 0, 1> }} {dice} }} }} object {{ G }} {floor} {sun}"
+            ),
+        ),
+        (
+            "without lights within another",
+            format!("light_group {{ {red} {ball} light_group {{ {dice} }} }} {floor} {sun}"),
+        ),
+        (
             "lights of unions shine on all",
             format!("light_group {{ union {{ {red} {ball} }} {dice} }} {floor} {sun}"),
         ),

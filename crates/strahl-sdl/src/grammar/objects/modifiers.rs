@@ -169,7 +169,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 let on = self.switched()?;
                 if let ObjectKind::Csg {
-                    op: CsgOp::LightGroup { global_lights },
+                    op: CsgOp::LightGroup { global_lights, .. },
                     ..
                 } = &mut entity.object.kind
                 {

@@ -142,7 +142,12 @@ impl Parser<'_> {
             smooth_fields,
             ..
         } = declared.tally;
-        if lights || bare || smooth_fields {
+        if lights {
+            let mut entity = declared.entity.clone();
+            take_outer_lights(&mut entity.object, &self.state.shared);
+            return entity;
+        }
+        if bare || smooth_fields {
             return declared.entity.clone();
         }
         let large = parts > SMALL || elements > FEW_TRIANGLES + parts;
@@ -201,6 +206,52 @@ impl Parser<'_> {
         self.count_objects(copied)?;
         linker.link(&mut self.scene);
         Ok(())
+    }
+}
+
+/// In POV-Ray (measured) the lights of a group shine on the objects of a group within it if that one has been declared, alone or within another object;
+/// but not on its unions, intersections and the like. Those become groups of their own without lights, on which the nearest lights shine.
+fn take_outer_lights(object: &mut Object, shared: &Shared) {
+    let mut waiting = vec![object];
+    while let Some(object) = waiting.pop() {
+        let ObjectKind::Csg { op, children } = &mut object.kind else {
+            continue;
+        };
+        let has_lights = children
+            .0
+            .iter()
+            .any(|c| matches!(c.kind, ObjectKind::Light(_)));
+        if let CsgOp::LightGroup { outer_lights, .. } = op
+            && has_lights
+        {
+            *outer_lights = true;
+            for child in children.0.iter_mut().filter(|c| is_composite(c, shared)) {
+                let op = CsgOp::LightGroup {
+                    global_lights: false,
+                    outer_lights: false,
+                };
+                let span = child.span;
+                let parts = std::mem::replace(child, Object::csg(op, vec![]));
+                *child = Object::csg(op, vec![parts]);
+                child.span = span;
+            }
+        }
+        waiting.extend(&mut children.0);
+    }
+}
+
+/// Whether an object is a union, intersection, difference or merge of others.
+fn is_composite(object: &Object, shared: &Shared) -> bool {
+    let kind = match &object.kind {
+        ObjectKind::Instance(id) => shared.kind_of(*id).map(|declared| &declared.kind),
+        kind => Some(kind),
+    };
+    let Some(ObjectKind::Csg { op, .. }) = kind else {
+        return false;
+    };
+    match op {
+        CsgOp::Union | CsgOp::Merge | CsgOp::Intersection | CsgOp::Difference => true,
+        CsgOp::Inverse | CsgOp::Clip | CsgOp::Bound | CsgOp::LightGroup { .. } => false,
     }
 }
 
