@@ -178,6 +178,14 @@ pub(crate) const SCENES: &[(&str, &str)] = &[
         "mesh2 { vertex_vectors { 4, <-1, -1, 0>, <1, -1, 0>, <0, 0, -1>, <0, 1.2, 0> } normal_vectors { 2, <-1, 0, -1>, <0.5, 1, -1> } uv_vectors { 2, <0, 0>, <1, 1> } face_indices { 3, <0, 1, 2>, <0, 2, 3>, <1, 2, 3> } normal_indices { 3, <0, 0, 1>, <0, 0, 0>, <1, 1, 0> } uv_indices { 3, <0, 0, 1>, <0, 0, 0>, <1, 1, 0> } no_shadow texture { Red } }",
     ),
     (
+        "mesh2 with normal indices for the first faces",
+        "mesh2 { vertex_vectors { 4 <-1, -1, 0> <1, -1, 0> <0, 0, -1> <0, 1.2, 0> } normal_vectors { 4, <-1, 0, -1>, <1, 0, -1>, <0, 0, -1>, <0, 1, -1> } face_indices { 3, <0, 1, 2>, <0, 2, 3>, <1, 2, 3> } normal_indices { 1, <0, 1, 2> } no_shadow texture { Red } }",
+    ),
+    (
+        "mesh2 without normal indices",
+        "mesh2 { vertex_vectors { 4 <-1, -1, 0> <1, -1, 0> <0, 0, -1> <0, 1.2, 0> } normal_vectors { 4, <-1, 0, -1>, <1, 0, -1>, <0, 0, -1>, <0, 1, -1> } face_indices { 3, <0, 1, 2>, <0, 2, 3>, <1, 2, 3> } normal_indices { 0 } no_shadow texture { Red } }",
+    ),
+    (
         "closed mesh2 in CSG",
         "difference { mesh2 { vertex_vectors { 4, <-1, -1, -1>, <1.5, -1, -0.5>, <0, -1, 1.5>, <0, 1.3, 0> } face_indices { 4, <0, 1, 2>, <0, 1, 3>, <1, 2, 3>, <2, 0, 3> } inside_vector y } sphere { <0, 0, -1>, 0.8 texture { Green } } texture { Red } }",
     ),

@@ -23,8 +23,8 @@ struct Lists {
     faces: Vec<[u32; 3]>,
     /// The textures at the corners of each face with textures.
     face_textures: HashMap<usize, [usize; 3]>,
-    normal_faces: Vec<[u32; 3]>,
-    uv_faces: Vec<[u32; 3]>,
+    normal_faces: Option<Vec<[u32; 3]>>,
+    uv_faces: Option<Vec<[u32; 3]>>,
     has_inside: bool,
 }
 
@@ -42,10 +42,10 @@ pub(in crate::grammar::objects) fn mesh2(p: &mut Parser<'_>) -> PResult<Entity> 
     p.braces(|p| {
         let mut lists = Lists::default();
         while p.mesh2_list(&mut lists)? {}
-        let (normals, faces) = (lists.normals.len(), lists.normal_faces.len());
-        let normals = p.numbering(place, "normal", normals, faces, &lists)?;
-        let (uvs, faces) = (lists.uvs.len(), lists.uv_faces.len());
-        let uvs = p.numbering(place, "uv", uvs, faces, &lists)?;
+        let faces = lists.normal_faces.as_ref().map(Vec::len);
+        let normals = p.numbering(place, "normal", lists.normals.len(), faces, &lists)?;
+        let faces = lists.uv_faces.as_ref().map(Vec::len);
+        let uvs = p.numbering(place, "uv", lists.uvs.len(), faces, &lists)?;
         let mut entity = p.mesh_object(lists.into_parts(normals, uvs), place)?;
         p.modifiers(&mut entity)?;
         Ok(entity)
@@ -83,11 +83,13 @@ impl Parser<'_> {
             Word::FaceIndices => self.face_indices(lists)?,
             Word::NormalIndices => {
                 let count = lists.normals.len();
-                lists.normal_faces = self.counted_list(|p| p.face(count, "normal_vectors"))?;
+                let faces = self.counted_list(|p| p.face(count, "normal_vectors"))?;
+                lists.normal_faces = Some(faces);
             }
             Word::UvIndices => {
                 let count = lists.uvs.len();
-                lists.uv_faces = self.counted_list(|p| p.face(count, "uv_vectors"))?;
+                let faces = self.counted_list(|p| p.face(count, "uv_vectors"))?;
+                lists.uv_faces = Some(faces);
             }
             _ => lists.has_inside = self.vector3()? != DVec3::ZERO,
         }
@@ -207,27 +209,34 @@ impl Parser<'_> {
         place: Place,
         what: &str,
         vectors: usize,
-        faces: usize,
+        faces: Option<usize>,
         lists: &Lists,
     ) -> PResult<Numbering> {
         let (expected, vertices) = (lists.faces.len(), lists.vertices.len());
         if vectors == 0 {
             return Ok(Numbering::None);
         }
-        if faces == 0 && vectors >= vertices {
-            return Ok(Numbering::Vertices);
-        }
-        if faces == 0 {
+        let Some(faces) = faces else {
+            if vectors >= vertices {
+                return Ok(Numbering::Vertices);
+            }
             let message =
                 format!("there are {vectors} {what}_vectors for {vertices} vertex_vectors");
             let hint = format!("give one for each vertex, or {what}_indices");
             return Err(self.fail_hint(place, message, hint));
-        }
-        if faces == expected {
+        };
+        // The last faces may do without normals: they are flat.
+        let may_be_fewer = what == "normal";
+        if faces == expected || (may_be_fewer && faces < expected) {
             return Ok(Numbering::Own);
         }
         let message = format!("there are {faces} {what}_indices for {expected} face_indices");
-        Err(self.fail_hint(place, message, "give one for each face"))
+        let hint = if may_be_fewer {
+            "give one for each face, or for the first ones, whose normals are interpolated"
+        } else {
+            "give one for each face"
+        };
+        Err(self.fail_hint(place, message, hint))
     }
 }
 
@@ -254,10 +263,12 @@ impl Lists {
                 has_inside,
             };
         }
-        let numbers = |numbering, own: &[[u32; 3]], index: usize, face: [u32; 3]| match numbering {
-            Numbering::None => [NONE; 3],
-            Numbering::Vertices => face,
-            Numbering::Own => own.get(index).copied().unwrap_or([NONE; 3]),
+        let numbers = |numbering, own: &Option<Vec<_>>, index: usize, face: [u32; 3]| match (
+            numbering, own,
+        ) {
+            (Numbering::None, _) => [NONE; 3],
+            (Numbering::Own, Some(own)) => own.get(index).copied().unwrap_or([NONE; 3]),
+            _ => face,
         };
         let usable = |i: &u32| {
             let normal = self.normals.get(*i as usize);
