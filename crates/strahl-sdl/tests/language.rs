@@ -320,6 +320,30 @@ fn internal_functions_need_no_include() {
     assert_eq!(values("#include \"functions.inc\"", &list[..1]), [4.0]);
 }
 
+/// The values are POV-Ray's (measured).
+#[test]
+fn functions_know_x_as_u_and_y_as_v() {
+    let setup = "
+        #declare A = function(u, v) { x + y * v }
+        #declare B = function(x, v, z) { u + y * v + z }
+        #declare C = function { u + 10 * v }
+        #declare D = function(k, y) { v * 10 + u }
+        #declare E = function(k1, k2, z, y) { x + y * z + k1 * y + k2 }";
+    let list = [
+        "A(2, 3)",
+        "B(2, 3, 5)",
+        "C(7, 8, 9)",
+        "D(7, 8)",
+        "E(2, 3, 5, 7)",
+    ];
+    assert_eq!(values(setup, &list), [11.0, 16.0, 87.0, 80.0, 52.0]);
+    let found = errors("#declare F = function(k) { k * t }");
+    assert!(
+        found[0].contains("`t` is not a parameter of this function"),
+        "{found:?}"
+    );
+}
+
 #[test]
 fn a_name_from_an_include_not_included_is_recognised() {
     let found = errors("background { color Firebrick }");

@@ -45,6 +45,15 @@ const fn unary(word: Word) -> Option<UnaryOp> {
     })
 }
 
+fn not_a_parameter(word: Word, body: &Body) -> String {
+    let names: Vec<&str> = body.parameters.iter().map(|(_, t)| t.as_str()).collect();
+    format!(
+        "`{}` is not a parameter of this function, which has {}",
+        word.text(),
+        names.join(", ")
+    )
+}
+
 impl Parser<'_> {
     /// The value after the keyword `function` in a declaration.
     pub(crate) fn function_value(&mut self) -> PResult<Value> {
@@ -324,6 +333,27 @@ impl Parser<'_> {
         }
     }
 
+    /// A coordinate that is not a parameter by this name. In POV-Ray `u` is another name of `x`, and `v` of `y`; a coordinate that is no
+    /// parameter is 0 (measured).
+    fn coordinate(&mut self, body: &mut Body, token: Token, word: Word) -> Expr {
+        let other = match word {
+            Word::X => Some(Word::U),
+            Word::Y => Some(Word::V),
+            Word::U => Some(Word::X),
+            Word::V => Some(Word::Y),
+            _ => None,
+        };
+        let other = other.map(|word| Symbol(word as u32));
+        let parameter = body.parameters.iter().find(|(s, _)| Some(*s) == other);
+        if let Some((_, text)) = parameter {
+            return body.graph.parameter(text);
+        }
+        let place = self.place_of(token);
+        let hint = "it counts as 0, as in POV-Ray";
+        self.warn_hint(place, not_a_parameter(word, body), hint);
+        body.graph.constant(0.0)
+    }
+
     fn formula_word(&mut self, body: &mut Body, token: Token, word: Word) -> PResult<Expr> {
         if let Some(operation) = unary(word) {
             self.take(token)?;
@@ -339,15 +369,13 @@ impl Parser<'_> {
                 self.take(token)?;
                 return self.nested(|p| p.formula_loop(body, word));
             }
-            Word::X | Word::Y | Word::Z | Word::U | Word::V | Word::T => {
-                let names: Vec<&str> = body.parameters.iter().map(|(_, t)| t.as_str()).collect();
-                let message = format!(
-                    "`{}` is not a parameter of this function, which has {}",
-                    word.text(),
-                    names.join(", ")
-                );
+            Word::X | Word::Y | Word::Z | Word::U | Word::V => {
+                self.take(token)?;
+                return Ok(self.coordinate(body, token, word));
+            }
+            Word::T => {
                 let place = self.place_of(token);
-                return Err(self.fail(place, message));
+                return Err(self.fail(place, not_a_parameter(word, body)));
             }
             _ => {}
         }
