@@ -17,6 +17,8 @@ mod nurbs;
 mod piece;
 mod search;
 mod settle;
+#[cfg(test)]
+mod shadow;
 mod subdivision;
 #[cfg(test)]
 mod tests;

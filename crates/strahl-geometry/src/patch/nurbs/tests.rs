@@ -1,3 +1,5 @@
+mod dense;
+
 use super::*;
 use crate::conformance::Random;
 use crate::patch::BicubicPatch;
@@ -181,6 +183,32 @@ fn spheres_and_tori_are_exact() {
     }
 }
 
+/// A torus out of round, periodic in both directions.
+fn periodic(degree: [u32; 2], random: &mut Random) -> NurbsData {
+    let (columns, rows) = (9, 8);
+    let loose: Vec<DVec3> = (0..columns * rows)
+        .map(|k| {
+            let angle = |i: usize, n: usize| TAU * i as f64 / n as f64;
+            let (a, b) = (angle(k % columns, columns), angle(k / columns, rows));
+            let r = 1.0 + 0.5 * b.cos();
+            DVec3::new(r * a.cos(), 0.5 * b.sin(), r * a.sin()) + random.cube() * 0.05
+        })
+        .collect();
+    // As many control points are repeated as the degree says, on even knots.
+    let (wide, high) = (columns + degree[0] as usize, rows + degree[1] as usize);
+    let points = (0..wide * high)
+        .map(|k| loose[(k / wide % rows) * columns + k % wide % columns])
+        .collect();
+    let knots =
+        |count: usize, degree: u32| (0..count + degree as usize + 1).map(|k| k as f64).collect();
+    NurbsData {
+        degree,
+        knots: [knots(wide, degree[0]), knots(high, degree[1])],
+        points,
+        weights: vec![],
+    }
+}
+
 /// Rays at the lines between patches, to the last bit: each meets the closed surface an even number of times, and at the place
 /// aimed at once.
 fn shoot(rays: usize, seed: u64) -> [usize; 2] {
@@ -189,31 +217,9 @@ fn shoot(rays: usize, seed: u64) -> [usize; 2] {
     let mut surface = nurbs(&torus());
     for round in 0..rays {
         if round % 10_000 == 0 {
-            // A torus out of round, periodic in both directions, of another degree each time.
+            // Of another degree each time.
             let degree = [2 + ((round / 10_000 + seed as usize) % 4) as u32, 3];
-            let (columns, rows) = (9, 8);
-            let loose: Vec<DVec3> = (0..columns * rows)
-                .map(|k| {
-                    let angle = |i: usize, n: usize| TAU * i as f64 / n as f64;
-                    let (a, b) = (angle(k % columns, columns), angle(k / columns, rows));
-                    let r = 1.0 + 0.5 * b.cos();
-                    DVec3::new(r * a.cos(), 0.5 * b.sin(), r * a.sin()) + random.cube() * 0.05
-                })
-                .collect();
-            // As many control points are repeated as the degree says, on even knots.
-            let (wide, high) = (columns + degree[0] as usize, rows + degree[1] as usize);
-            let points = (0..wide * high)
-                .map(|k| loose[(k / wide % rows) * columns + k % wide % columns])
-                .collect();
-            let knots = |count: usize, degree: u32| {
-                (0..count + degree as usize + 1).map(|k| k as f64).collect()
-            };
-            surface = nurbs(&NurbsData {
-                degree,
-                knots: [knots(wide, degree[0]), knots(high, degree[1])],
-                points,
-                weights: vec![],
-            });
+            surface = nurbs(&periodic(degree, &mut random));
         }
         let part = &surface.parts[random.below(surface.parts.len() as u64) as usize];
         let x = match random.below(3) {
