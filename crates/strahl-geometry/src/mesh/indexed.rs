@@ -1,60 +1,11 @@
+use super::data::{MeshData, check_finite};
 use super::shear::{RayShear, intersect_sheared};
 use super::triangle::{any_normal, apply_uvs, combine, front_normal, smooth_normal};
+use super::walk::LazyTree;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
-use std::sync::{Arc, OnceLock};
-use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
+use std::sync::Arc;
 use strahl_math::error::ROUNDOFF;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
-
-/// The data of a mesh, checked by [`TriangleMesh::try_new`].
-///
-/// The lists per vertex have as many entries as `positions`, the lists per face as many as `indices`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MeshData {
-    /// The origin of `positions`. Zero, unless the mesh is small and far away.
-    pub anchor: DVec3,
-    /// The vertices, kept exactly as they are.
-    pub positions: Vec<[f32; 3]>,
-    /// The triangles: three vertices each, counter-clockwise as seen from the front.
-    pub indices: Vec<[u32; 3]>,
-    /// Normals per vertex, of any length, for smooth shading.
-    pub normals: Option<Vec<[f32; 3]>>,
-    /// Texture coordinates per vertex.
-    pub uvs: Option<Vec<[f32; 2]>>,
-    /// Material slot per face.
-    pub face_materials: Option<Vec<u16>>,
-    /// Line of the source file per face.
-    pub face_lines: Option<Vec<u32>>,
-    /// Whether a face continues the polygon of the one before, which was cut into triangles.
-    pub face_continues: Option<Vec<bool>>,
-}
-
-impl MeshData {
-    /// A mesh without normals and texture from vertices in f64 (`DVec3` or `[f64; 3]`), which are rounded to f32.
-    ///
-    /// The anchor stays zero, unless the mesh is so small for its place (extent below 1/1024 of the largest coordinate)
-    /// that f32 would leave less than 14 bits for its detail; then it is the middle of the mesh. Vertices that
-    /// f32 holds exactly are kept exactly.
-    pub fn from_f64<V: Copy + Into<DVec3>>(vertices: &[V], indices: Vec<[u32; 3]>) -> Self {
-        let points = || vertices.iter().map(|&v| v.into());
-        let bounds = Aabb::from_points(points());
-        let small = bounds.size().max_element() < bounds.max_abs() / 1024.0;
-        let exact = |v: DVec3| v.as_vec3().as_dvec3() == v;
-        let anchor = if small && bounds.is_bounded() && !points().all(exact) {
-            bounds.center()
-        } else {
-            DVec3::ZERO
-        };
-        Self {
-            anchor,
-            positions: points()
-                .map(|v| (v - anchor).as_vec3().to_array())
-                .collect(),
-            indices,
-            ..Self::default()
-        }
-    }
-}
 
 /// Triangles that share their vertices: 12 bytes per vertex and 12 per triangle, plus optional data.
 ///
@@ -84,85 +35,6 @@ pub struct TriangleMesh {
     /// Triangles whose last two vertices are exchanged against the order in which they were written; `None` if there are none.
     exchanged: Option<Box<[bool]>>,
     tree: LazyTree,
-}
-
-/// A tree over the triangles of a mesh, relative to its anchor, built when it is first asked for.
-#[derive(Clone, Debug, Default)]
-struct LazyTree(OnceLock<Arc<Bvh2>>);
-
-/// Meshes are equal whether they have been asked for their trees or not.
-impl PartialEq for LazyTree {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
-}
-
-impl MeshData {
-    /// Checks that the lists have the right lengths, and all numbers are finite.
-    fn check(&self) -> Result<(), GeometryError> {
-        let (vertices, faces) = (self.positions.len() as u64, self.indices.len() as u64);
-        if faces == 0 {
-            return Err(GeometryError::Degenerate {
-                what: "mesh",
-                why: "it has no triangles",
-            });
-        }
-        if faces > u64::from(u32::MAX) {
-            return Err(GeometryError::IndexOutOfRange {
-                what: "triangle",
-                index: faces - 1,
-                count: u64::from(u32::MAX),
-            });
-        }
-        if let Some(&bad) = self
-            .indices
-            .iter()
-            .flatten()
-            .find(|&&i| u64::from(i) >= vertices)
-        {
-            return Err(GeometryError::IndexOutOfRange {
-                what: "vertex",
-                index: u64::from(bad),
-                count: vertices,
-            });
-        }
-        let length = |what, list: Option<usize>, expected: u64| match list {
-            Some(found) if found as u64 != expected => Err(GeometryError::WrongCount {
-                what,
-                expected,
-                found: found as u64,
-            }),
-            _ => Ok(()),
-        };
-        length("normals", self.normals.as_ref().map(Vec::len), vertices)?;
-        length(
-            "texture coordinates",
-            self.uvs.as_ref().map(Vec::len),
-            vertices,
-        )?;
-        length(
-            "face materials",
-            self.face_materials.as_ref().map(Vec::len),
-            faces,
-        )?;
-        length("face lines", self.face_lines.as_ref().map(Vec::len), faces)?;
-        length(
-            "marks of faces that continue polygons",
-            self.face_continues.as_ref().map(Vec::len),
-            faces,
-        )?;
-        if !self.anchor.is_finite() {
-            return Err(GeometryError::NotFinite {
-                what: "anchor of the mesh",
-            });
-        }
-        check_finite("vertex", &self.positions)?;
-        check_finite("normal of vertex", self.normals.as_deref().unwrap_or(&[]))?;
-        check_finite(
-            "texture coordinate of vertex",
-            self.uvs.as_deref().unwrap_or(&[]),
-        )
-    }
 }
 
 impl TriangleMesh {
@@ -309,7 +181,12 @@ impl TriangleMesh {
 
     /// [`TriangleMesh::hit_element`] for a shear relative to the anchor.
     #[inline]
-    fn hit_local(&self, triangle: u32, shear: &RayShear, range: Interval) -> Option<PrimHit> {
+    pub(super) fn hit_local(
+        &self,
+        triangle: u32,
+        shear: &RayShear,
+        range: Interval,
+    ) -> Option<PrimHit> {
         let [a, b, c] = self.sheared_corners(triangle, shear);
         let hit = intersect_sheared(shear, a, b, c)?;
         (range.accepts(hit.t) && self.has_area(triangle)).then_some(PrimHit {
@@ -425,34 +302,9 @@ impl TriangleMesh {
         self
     }
 
-    /// The tree over the triangles, relative to the anchor.
-    pub(super) fn tree(&self) -> &Bvh2 {
-        self.tree.0.get_or_init(|| {
-            let boxes: Vec<_> = (0..self.triangle_count())
-                .map(|i| Aabb::from_points(self.local_corners(i)))
-                .collect();
-            Arc::new(Bvh2::build(&boxes))
-        })
-    }
-
-    /// Passes the hits of a ray with the triangles, in any order, to `look`, which returns the `t` up to which further ones matter.
-    fn walk<F: FnMut(PrimHit, f64) -> f64>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        look: F,
-    ) {
-        let local = Ray::new(ray.origin - self.anchor, ray.direction);
-        let mut hits = Hits {
-            mesh: self,
-            shear: RayShear::new(ray).relative_to(self.anchor),
-            range,
-            skipped: from.map(|surface| surface.element),
-            look,
-        };
-        self.tree()
-            .traverse(&local, range, &mut hits, &mut TraversalStats::default());
+    #[inline]
+    pub(super) const fn lazy_tree(&self) -> &LazyTree {
+        &self.tree
     }
 
     #[inline]
@@ -472,29 +324,6 @@ impl TriangleMesh {
     #[inline]
     pub(crate) fn has_area(&self, triangle: u32) -> bool {
         span_area(self.local_corners(triangle))
-    }
-}
-
-/// Tests triangles, and calls `look` with each hit.
-struct Hits<'a, F> {
-    mesh: &'a TriangleMesh,
-    /// Relative to the mesh's anchor.
-    shear: RayShear,
-    range: Interval,
-    skipped: Option<u32>,
-    look: F,
-}
-
-impl<F: FnMut(PrimHit, f64) -> f64> Visitor for Hits<'_, F> {
-    #[inline]
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        if self.skipped == Some(id) {
-            return t_max;
-        }
-        match self.mesh.hit_local(id, &self.shear, self.range) {
-            Some(hit) => (self.look)(hit, t_max),
-            None => t_max,
-        }
     }
 }
 
@@ -606,20 +435,6 @@ impl Primitive for TriangleMesh {
     /// Any map will do, within the rounding of f32 (see [`TriangleMesh::transformed`]).
     fn baked(&self, map: &Transform) -> Option<Shape> {
         self.transformed(map).ok().map(|mesh| Arc::new(mesh).into())
-    }
-}
-
-/// Finds the first entry of a list that has a NaN or an infinity in it.
-fn check_finite<const N: usize>(
-    what: &'static str,
-    list: &[[f32; N]],
-) -> Result<(), GeometryError> {
-    match list.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
-        Some(index) => Err(GeometryError::NotFiniteAt {
-            what,
-            index: index as u64,
-        }),
-        None => Ok(()),
     }
 }
 

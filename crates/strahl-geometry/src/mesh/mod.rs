@@ -10,6 +10,7 @@ mod brep_tests;
 mod closed;
 #[cfg(test)]
 mod crack_tests;
+mod data;
 mod edge_runs;
 mod indexed;
 mod inside_map;
@@ -22,9 +23,11 @@ pub(crate) mod samples;
 mod shear;
 mod triangle;
 mod triangulate;
+mod walk;
 
 pub use brep::Brep;
-pub use indexed::{MeshData, TriangleMesh};
+pub use data::MeshData;
+pub use indexed::TriangleMesh;
 pub use polygon::{PlaneHit, Polygon, fan_triangles};
 pub(crate) use shear::{Axis, LOST_DIGITS, intersect_sheared};
 pub use shear::{RayShear, TriangleHit, intersect_triangle};
