@@ -390,18 +390,36 @@ impl Bounds {
         if self.is_empty() || exponent.is_empty() {
             return Self::point(1.0).with_nan(true);
         }
+        let whole = exponent.min.ceil() <= exponent.max.floor();
         let negative_zero = self.min == 0.0 && self.min.is_sign_negative() && exponent.min < 0.0;
-        if self.min < 0.0 || negative_zero {
+        if self.min == f64::NEG_INFINITY || whole && negative_zero {
             return Self::UNKNOWN;
         }
+        // What is negative has powers with whole exponents only.
+        let may_fail = self.min < 0.0;
+        let mut powers = if !may_fail {
+            self.powers(exponent)
+        } else if whole {
+            let sizes = self.abs().powers(exponent);
+            Self::new(-sizes.max, sizes.max)
+        } else {
+            let base = self.restrict(-0.0, f64::INFINITY);
+            if base.is_empty() && !nan {
+                return Self::NAN;
+            }
+            base.powers(exponent)
+        };
+        if nan {
+            powers = powers.hull(Self::point(1.0));
+        }
+        powers.with_nan(nan || may_fail)
+    }
+
+    /// Bounds of the powers of the absolute values.
+    fn powers(self, exponent: Self) -> Self {
         let down = |a: f64, b: f64| upper(below(det::pow(a.abs(), b), POWER_ERROR), 0.0);
         let up = |a: f64, b: f64| above(det::pow(a.abs(), b), POWER_ERROR);
-        let powers = self.corners(exponent, down, up);
-        if nan {
-            powers.hull(Self::point(1.0)).with_nan(true)
-        } else {
-            powers
-        }
+        self.corners(exponent, down, up)
     }
 
     /// The remainder of truncated division, with the sign of the dividend.
@@ -745,6 +763,63 @@ mod tests {
                 assert_same(a.power(exponent), ends, &(a, exponent));
             }
         }
+    }
+
+    #[test]
+    fn powers_of_points_are_within_those_of_intervals() {
+        let exponents = [
+            -2.5, -2.0, -1.0, -0.3, 0.0, 0.4, 0.5, 1.0, 1.7, 2.0, 2.5, 3.0, 65.0, 66.5,
+        ];
+        let bases = [
+            -f64::MAX,
+            -9.0,
+            -1.0,
+            -0.2,
+            -1e-200,
+            -0.0,
+            0.0,
+            1e-200,
+            0.7,
+            1.0,
+            5.0,
+            f64::MAX,
+        ];
+        let between = |from: f64, to: f64| {
+            [
+                from,
+                to,
+                0.5 * from + 0.5 * to,
+                (0.7 * from + 0.3 * to).clamp(from, to),
+            ]
+        };
+        for (i, low) in bases.into_iter().enumerate() {
+            for high in bases.into_iter().skip(i) {
+                for (k, least) in exponents.into_iter().enumerate() {
+                    for most in exponents.into_iter().skip(k) {
+                        let (base, exponent) = (Bounds::new(low, high), Bounds::new(least, most));
+                        let powers = base.pow(exponent);
+                        for x in between(low, high) {
+                            for y in between(least, most) {
+                                let power = det::pow(x, y);
+                                let is_within = if power.is_nan() {
+                                    powers.nan
+                                } else {
+                                    powers.min <= power && power <= powers.max
+                                };
+                                assert!(
+                                    is_within,
+                                    "{x} to {y} is {power}: {base:?} {exponent:?} {powers:?}"
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let fails =
+            |low: f64, high: f64, exponent: Bounds| Bounds::new(low, high).pow(exponent).is_empty();
+        assert!(fails(-2.0, -1.0, Bounds::point(2.5)) && fails(-2.0, -1.0, Bounds::new(1.2, 1.8)));
+        assert!(!fails(-2.0, -1.0, Bounds::new(1.2, 2.0)) && !fails(-2.0, 0.0, Bounds::point(0.5)));
     }
 
     #[test]
