@@ -182,7 +182,7 @@ impl<'s> TreeTracer<'s> {
         let weight = branch.weight * offshoot.coefficient;
         let end = if branch.depth >= self.settings.max_depth {
             Some(BranchEnd::DepthLimit)
-        } else if weight < self.settings.adc_bailout || weight == 0.0 {
+        } else if weight < self.settings.adc_bailout {
             Some(BranchEnd::WeightCutoff)
         } else if self.nodes.len() + self.waiting.len() >= self.settings.max_tree_rays as usize {
             Some(BranchEnd::TreeLimit)

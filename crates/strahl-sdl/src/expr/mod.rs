@@ -234,7 +234,7 @@ impl Parser<'_> {
                     self.warn_hint(
                         place,
                         "division by zero gives infinity, as in POV-Ray",
-                        "objects and colours that use it will be rejected",
+                        "most objects cannot have an infinite size or place; test the divisor with `#if` first",
                     );
                 }
                 // Of any number, also of 0 and of negative ones (measured).

@@ -74,7 +74,8 @@ impl Parser<'_> {
                         self.fail(place, format!("adc_bailout must be 0 or more, not {value}"))
                     );
                 }
-                self.scene.settings.adc_bailout = value;
+                // Branches of no weight at all are not traced, as in POV-Ray; 0 would trace them (those of an NFF scene count).
+                self.scene.settings.adc_bailout = value.max(f64::MIN_POSITIVE);
             }
             Word::MaxTraceLevel => {
                 self.take(token)?;

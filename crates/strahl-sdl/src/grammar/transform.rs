@@ -46,7 +46,7 @@ impl Parser<'_> {
             if factors[axis] == 0.0 {
                 self.warn(
                     place,
-                    "a scale factor of 0 would flatten the object; 1 is used",
+                    "a scale factor of 0 would make everything flat; 1 is used, as in POV-Ray",
                 );
                 factors[axis] = 1.0;
             }
@@ -70,7 +70,7 @@ impl Parser<'_> {
             if rows.iter().take(3).all(|row| row[axis] == 0.0) {
                 self.warn(
                     place,
-                    "a matrix with a column of zeros would flatten the object; 1 is used on its diagonal",
+                    "a matrix with a column of zeros would make everything flat; 1 is used on its diagonal",
                 );
                 rows[axis][axis] = 1.0;
             }
