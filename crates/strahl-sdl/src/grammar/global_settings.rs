@@ -74,7 +74,7 @@ impl Parser<'_> {
                         self.fail(place, format!("adc_bailout must be 0 or more, not {value}"))
                     );
                 }
-                // Branches of no weight at all are not traced, as in POV-Ray; 0 would trace them (those of an NFF scene count).
+                // POV-Ray does not trace branches of weight 0. The setting 0 would trace them, which NFF scenes need for the published numbers of rays.
                 self.scene.settings.adc_bailout = value.max(f64::MIN_POSITIVE);
             }
             Word::MaxTraceLevel => {
