@@ -43,7 +43,7 @@ fn seen(scene: Scene, eye: DVec3) -> [f32; 3] {
 fn checkered() -> Object {
     let blocks = Pigment::Blocks(
         Pattern::Checker.into(),
-        vec![opaque(0.0, 1.0, 0.0), opaque(1.0, 0.0, 0.0)],
+        vec![opaque(0.0, 1.0, 0.0), opaque(1.0, 0.0, 0.0)].into(),
     );
     let texture = PlainTexture {
         finish: PovFinish {
@@ -117,7 +117,8 @@ fn layers_mirrors_and_shadows_follow_the_formula() {
         .into(),
         ..plain(opaque(0.2, 0.4, 0.8))
     };
-    let layered = |mirror: f64| Texture::Layered(vec![bottom(mirror).into(), top.clone().into()]);
+    let layered =
+        |mirror: f64| Texture::Layered(vec![bottom(mirror).into(), top.clone().into()].into());
     let wall = Cuboid::new(DVec3::new(-9.0, -9.0, -1.0), DVec3::new(9.0, 9.0, 0.0));
     let scene = |shade: bool| {
         let scene = Scene::new()
@@ -161,7 +162,7 @@ fn glass_without_texture_behind_blended_textures() {
         };
         (1.0, Texture::from(plain(Pigment::from(color))))
     };
-    let blended = Texture::Average(vec![clear(0.9), clear(0.5)], Box::default());
+    let blended = Texture::Average(vec![clear(0.9), clear(0.5)].into(), Box::default());
     let glass = Material {
         finish: Finish {
             transmission: Color::new(0.25, 0.5, 1.0),

@@ -128,7 +128,7 @@ mod tests {
                 None,
             ),
             texture(Pigment::default(), Some(PovNormal::new(height))),
-            Texture::Layered(vec![plain.clone(), texture(mapped(), None)]),
+            Texture::Layered(vec![plain.clone(), texture(mapped(), None)].into()),
             Texture::UvMapped(Box::new(plain)),
         ];
         for user in users {

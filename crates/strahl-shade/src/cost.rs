@@ -78,13 +78,15 @@ mod tests {
     fn members_that_are_all_evaluated_all_count() {
         let plain = Pigment::ColorMap(Pattern::Bozo.into(), BlendMap::new(vec![]));
         let one = plain.cost().operations;
-        let average = |n: usize| Pigment::Average(vec![(1.0, plain.clone()); n], Box::default());
+        let average =
+            |n: usize| Pigment::Average(vec![(1.0, plain.clone()); n].into(), Box::default());
         assert!(average(8).cost().operations >= 8 * one);
         // Only one block of a list is evaluated.
-        let blocks = |n: usize| Pigment::Blocks(Pattern::Checker.into(), vec![plain.clone(); n]);
+        let blocks =
+            |n: usize| Pigment::Blocks(Pattern::Checker.into(), vec![plain.clone(); n].into());
         assert_eq!(blocks(8).cost(), blocks(2).cost());
         let map = |n: usize| {
-            let entries = (0..n).map(|i| (i as f64, plain.clone())).collect();
+            let entries: Vec<_> = (0..n).map(|i| (i as f64, plain.clone())).collect();
             Pigment::PigmentMap(Pattern::Bozo.into(), BlendMap::new(entries)).cost()
         };
         assert_eq!(map(8), map(2));

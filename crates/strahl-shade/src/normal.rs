@@ -8,6 +8,7 @@ use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_math::noise::{dnoise, noise};
 
+use crate::SharedList;
 use crate::image_map::ImageMap;
 use crate::patterns::{Batch, Modifiers, Pattern, PatternField, TexturePoint, Warp, water};
 use crate::pigment::{Blend, BlendMap};
@@ -52,9 +53,9 @@ pub enum NormalKind {
     /// The weighted mean of two normals, chosen by a pattern's value (`normal_map`).
     Map(Pattern, BlendMap<PovNormal>),
     /// The normal of the block a point lies in. Blocks beyond the list take its last.
-    Blocks(Pattern, Vec<PovNormal>),
+    Blocks(Pattern, SharedList<PovNormal>),
     /// The weighted mean of normals (`average`).
-    Average(Vec<(f64, PovNormal)>),
+    Average(SharedList<(f64, PovNormal)>),
 }
 
 /// A normal statement: kind, amount and position of the perturbation.

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::ColorFt;
 use crate::image_map::ImageMap;
 use crate::patterns::{BATCH, Batch, Modifiers, PatternField, TexturePoint};
+use crate::{ColorFt, SharedList};
 use arrayvec::ArrayVec;
 use strahl_math::DVec3;
 
@@ -15,7 +15,7 @@ use strahl_math::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlendMap<T> {
     /// Position and entry.
-    pub entries: Vec<(f64, T)>,
+    pub entries: SharedList<(f64, T)>,
 }
 
 /// The result of a lookup in a [`BlendMap`].
@@ -29,8 +29,10 @@ pub enum Blend<'a, T> {
 
 impl<T> BlendMap<T> {
     /// A map of the given entries.
-    pub fn new(entries: Vec<(f64, T)>) -> Self {
-        Self { entries }
+    pub fn new(entries: impl Into<SharedList<(f64, T)>>) -> Self {
+        Self {
+            entries: entries.into(),
+        }
     }
 
     /// The entries for `value`; `None` only if the map is empty.
@@ -78,11 +80,11 @@ pub enum Pigment {
     /// A value of a pattern, looked up in a map of pigments.
     PigmentMap(Box<PatternField>, BlendMap<Pigment>),
     /// A block pattern whose blocks have these pigments. Blocks beyond the list take its last.
-    Blocks(Box<PatternField>, Vec<Pigment>),
+    Blocks(Box<PatternField>, SharedList<Pigment>),
     /// A picture, moved by warps, transformations and turbulence; clear beside a picture that is laid `once`.
     Image(Arc<ImageMap>, Box<Modifiers>),
     /// The weighted mean of pigments, each evaluated at the moved point.
-    Average(Vec<(f64, Pigment)>, Box<Modifiers>),
+    Average(SharedList<(f64, Pigment)>, Box<Modifiers>),
     /// The pigment at the surface's own coordinates: (u, v, 0) takes the place of the point.
     UvMapped(Box<Pigment>),
     /// A pigment with the colour that quick pictures show in its place (`quick_color`): see [`Pigment::of_quality`].
@@ -352,7 +354,7 @@ mod tests {
         }
         assert!(at(0.5 + 1e-12) < 0.26);
         assert_eq!(at(f64::NAN), 0.0);
-        assert!(BlendMap::<f64>::new(Vec::new()).lookup(0.5).is_none());
+        assert!(BlendMap::<f64>::new(vec![]).lookup(0.5).is_none());
     }
 
     /// Red of POV-Ray 3.7.0.10 at <0.3, -0.7, 1.1>.
@@ -374,10 +376,10 @@ mod tests {
                 pattern: Pattern::Checker,
                 modifiers: turbulent.clone(),
             }),
-            vec![ramp(Pattern::Bozo), ramp(Pattern::Granite)],
+            vec![ramp(Pattern::Bozo), ramp(Pattern::Granite)].into(),
         );
         let average = Pigment::Average(
-            vec![(1.0, ramp(Pattern::Bozo)), (2.0, ramp(Pattern::Granite))],
+            vec![(1.0, ramp(Pattern::Bozo)), (2.0, ramp(Pattern::Granite))].into(),
             Box::new(turbulent),
         );
         for (pigment, expected) in [(blocks, 0.42866036), (average, 0.43265471)] {

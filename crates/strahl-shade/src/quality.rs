@@ -181,19 +181,23 @@ impl Texture {
                 }
             }
             Self::Layered(list) | Self::MaterialMap(_, _, list) | Self::Shared(_, list) => {
-                list.iter_mut().for_each(|texture| texture.change(quality));
+                list.make_mut()
+                    .iter_mut()
+                    .for_each(|texture| texture.change(quality));
             }
             Self::Map(field, map) => {
                 field.change(quick);
-                let entries = map.entries.iter_mut();
+                let entries = map.entries.make_mut().iter_mut();
                 entries.for_each(|(_, texture)| texture.change(quality));
             }
             Self::Blocks(field, list) => {
                 field.change(quick);
-                list.iter_mut().for_each(|texture| texture.change(quality));
+                list.make_mut()
+                    .iter_mut()
+                    .for_each(|texture| texture.change(quality));
             }
             Self::Average(list, _) => {
-                let entries = list.iter_mut();
+                let entries = list.make_mut().iter_mut();
                 entries.for_each(|(_, texture)| texture.change(quality));
             }
             Self::Transformed(_, inner) | Self::UvMapped(inner) => inner.change(quality),
@@ -239,13 +243,19 @@ impl Pigment {
             Self::ColorMap(field, _) => field.change(quick),
             Self::PigmentMap(field, map) => {
                 field.change(quick);
-                map.entries.iter_mut().for_each(|(_, p)| p.change(quick));
+                map.entries
+                    .make_mut()
+                    .iter_mut()
+                    .for_each(|(_, p)| p.change(quick));
             }
             Self::Blocks(field, list) => {
                 field.change(quick);
-                list.iter_mut().for_each(|p| p.change(quick));
+                list.make_mut().iter_mut().for_each(|p| p.change(quick));
             }
-            Self::Average(list, _) => list.iter_mut().for_each(|(_, p)| p.change(quick)),
+            Self::Average(list, _) => list
+                .make_mut()
+                .iter_mut()
+                .for_each(|(_, p)| p.change(quick)),
             Self::UvMapped(inner) => inner.change(quick),
         }
     }

@@ -16,7 +16,7 @@ use crate::normal::PovNormal;
 use crate::patterns::{BATCH, Modifiers, PatternField, TexturePoint};
 use crate::pigment::{Blend, BlendMap, Pigment};
 use crate::pov_finish::PovFinish;
-use crate::{Color, ColorFt};
+use crate::{Color, ColorFt, SharedList};
 use paint::Stack;
 use spaces::{Chain, Identity, NormalSpace, Ways};
 
@@ -37,18 +37,18 @@ pub enum Texture {
     /// One pigment, normal and finish.
     Plain(PlainTexture),
     /// Textures laid over each other, the lowest first, as they are written.
-    Layered(Vec<Texture>),
+    Layered(SharedList<Texture>),
     /// Two textures blended by the value of a pattern (`texture_map`).
     Map(Box<PatternField>, BlendMap<Texture>),
     /// The texture of the block a point lies in. Blocks beyond the list take its last.
-    Blocks(Box<PatternField>, Vec<Texture>),
+    Blocks(Box<PatternField>, SharedList<Texture>),
     /// The weighted mean of textures (`average`), at the point moved by these modifiers.
-    Average(Vec<(f64, Texture)>, Box<Modifiers>),
+    Average(SharedList<(f64, Texture)>, Box<Modifiers>),
     /// The texture whose number a picture's texel holds (`material_map`): red · 255, or the code of a grey picture, modulo the
     /// number of textures.
-    MaterialMap(Arc<ImageMap>, Box<Modifiers>, Vec<Texture>),
+    MaterialMap(Arc<ImageMap>, Box<Modifiers>, SharedList<Texture>),
     /// Textures mixed by shares that vary from point to point, as those of a blob's components.
-    Shared(Arc<dyn Shares>, Vec<Texture>),
+    Shared(Arc<dyn Shares>, SharedList<Texture>),
     /// A texture in a space of its own.
     Transformed(Box<Transform>, Box<Texture>),
     /// A texture with everything but its normals at the surface's own coordinates: (u, v, 0) takes the place of the point. It is

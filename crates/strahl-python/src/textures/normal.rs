@@ -5,6 +5,7 @@ use crate::textures::pattern::{Pattern, transform};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use strahl::prelude::PovNormal;
+use strahl::shade::SharedList;
 use strahl::shade::normal::{NormalKind, SlopeMap};
 use strahl::shade::patterns::Pattern as Kind;
 use strahl::shade::pigment::BlendMap;
@@ -22,7 +23,7 @@ impl Normal {
     }
 }
 
-fn members(entries: &[(f64, Py<Normal>)]) -> Vec<(f64, PovNormal)> {
+fn members(entries: &[(f64, Py<Normal>)]) -> SharedList<(f64, PovNormal)> {
     let entries = entries.iter();
     entries
         .map(|(number, normal)| (*number, normal.get().0.clone()))

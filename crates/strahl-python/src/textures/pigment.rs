@@ -7,9 +7,9 @@ use crate::textures::pattern::{Pattern, transform};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use strahl::prelude::Pigment as Of;
-use strahl::shade::ColorFt;
 use strahl::shade::patterns::Pattern as Kind;
 use strahl::shade::pigment::BlendMap;
+use strahl::shade::{ColorFt, SharedList};
 
 /// A pigment. It never changes.
 #[pyclass(frozen, module = "strahl._strahl")]
@@ -99,7 +99,7 @@ fn transform_pigment(pigment: &mut Of, map: &Map) {
     }
 }
 
-fn members(entries: &[(f64, Py<Pigment>)]) -> Vec<(f64, Of)> {
+fn members(entries: &[(f64, Py<Pigment>)]) -> SharedList<(f64, Of)> {
     let entries = entries.iter();
     entries
         .map(|(number, pigment)| (*number, pigment.get().0.clone()))

@@ -9,6 +9,7 @@ use crate::textures::pigment::Pigment;
 use pyo3::prelude::*;
 use std::sync::Arc;
 use strahl::prelude::{Interior, PlainTexture, PovFinish, Texture as Of};
+use strahl::shade::SharedList;
 use strahl::shade::patterns::Pattern as Kind;
 use strahl::shade::pigment::BlendMap;
 use strahl::shade::pov_finish::{Iridescence, PovReflection};
@@ -107,12 +108,12 @@ impl Texture {
     }
 }
 
-fn all(members: &[Py<Texture>]) -> Vec<Of> {
+fn all(members: &[Py<Texture>]) -> SharedList<Of> {
     let members = members.iter();
     members.map(|texture| (*texture.get().0).clone()).collect()
 }
 
-fn members(entries: &[(f64, Py<Texture>)]) -> Vec<(f64, Of)> {
+fn members(entries: &[(f64, Py<Texture>)]) -> SharedList<(f64, Of)> {
     let entries = entries.iter();
     entries
         .map(|(number, texture)| (*number, (*texture.get().0).clone()))

@@ -65,10 +65,9 @@ fn stone() -> Material {
         ),
         ..PlainTexture::default()
     };
-    Material::textured(Texture::Layered(vec![
-        Texture::Plain(granite),
-        Texture::Plain(clouds),
-    ]))
+    Material::textured(Texture::Layered(
+        vec![Texture::Plain(granite), Texture::Plain(clouds)].into(),
+    ))
 }
 
 /// Four layers that mirror into different octants: the light of more than two children is added in their order, whichever go together.

@@ -65,7 +65,7 @@ fn transform(texture: &mut Surface, by: &Transform) {
                 normal::transform(normal, by);
             }
         }
-        Surface::Layered(layers) => layers.iter_mut().for_each(|l| transform(l, by)),
+        Surface::Layered(layers) => layers.make_mut().iter_mut().for_each(|l| transform(l, by)),
         Surface::Map(field, _) | Surface::Blocks(field, _) => {
             modifiers::transform(&mut field.modifiers.warps, by);
         }
@@ -96,7 +96,7 @@ fn is_uniform(texture: &Surface) -> bool {
 pub(super) fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
     match texture {
         Surface::Plain(plain) => Some(plain),
-        Surface::Layered(layers) => layers.last_mut().and_then(top_of),
+        Surface::Layered(layers) => layers.make_mut().last_mut().and_then(top_of),
         Surface::Transformed(_, inner) | Surface::UvMapped(inner) => top_of(inner),
         _ => None,
     }

@@ -104,6 +104,46 @@ fn declared_layers_and_patterned_textures() {
     );
 }
 
+/// So a thousand objects with a copy of a rich texture take little memory.
+#[test]
+fn copies_of_a_texture_share_their_members() {
+    for (declared, copy) in [
+        (
+            "pigment { gradient x pigment_map { [0 agate] [1 bozo] } }",
+            "pigment { P scale 2 }",
+        ),
+        (
+            "pigment { checker pigment { agate } pigment { bozo } }",
+            "pigment { P turbulence 1 }",
+        ),
+        (
+            "pigment { gradient x color_map { [0 rgb 0] [1 rgb y] } }",
+            "pigment { wood color_map { M } rotate z }",
+        ),
+        (
+            "texture { gradient x texture_map { [0 pigment { agate }] [1 normal { bumps }] } }",
+            "texture { P scale 2 finish { phong 1 } }",
+        ),
+    ] {
+        let map = "#declare M = color_map { [0 rgb x] [1 rgb z] }";
+        let text = format!(
+            "{map} #declare P = {declared}; sphere {{ 0, 1 {copy} }} sphere {{ 1, 2 {copy} }}"
+        );
+        let members = |texture: &Texture| match texture {
+            Texture::Map(_, map) => map.entries.as_ptr().cast::<()>(),
+            Texture::Plain(plain) => match &plain.pigment {
+                Pigment::ColorMap(_, map) => map.entries.as_ptr().cast(),
+                Pigment::PigmentMap(_, map) => map.entries.as_ptr().cast(),
+                Pigment::Blocks(_, list) => list.as_ptr().cast(),
+                other => panic!("{other:?}"),
+            },
+            other => panic!("{other:?}"),
+        };
+        let both = textures(&text);
+        assert_eq!(members(&both[0]), members(&both[1]), "{text}");
+    }
+}
+
 #[test]
 fn uv_mapping_is_an_attribute_of_the_object() {
     let (scene, _) = scene(

@@ -335,16 +335,19 @@ fn measured() -> Vec<(&'static str, PovNormal, [[f64; 3]; 4])> {
             "average normal_map{[1 bumps .3][2 dents .5]}",
             PovNormal {
                 amount: 0.5,
-                ..PovNormal::new(NormalKind::Average(vec![
-                    (
-                        1.0,
-                        PovNormal {
-                            amount: 0.3,
-                            ..PovNormal::new(NormalKind::Bumps)
-                        },
-                    ),
-                    (2.0, PovNormal::new(NormalKind::Dents)),
-                ]))
+                ..PovNormal::new(NormalKind::Average(
+                    vec![
+                        (
+                            1.0,
+                            PovNormal {
+                                amount: 0.3,
+                                ..PovNormal::new(NormalKind::Bumps)
+                            },
+                        ),
+                        (2.0, PovNormal::new(NormalKind::Dents)),
+                    ]
+                    .into(),
+                ))
             },
             [
                 [0.02273, -0.00394, -0.99973],
@@ -365,7 +368,8 @@ fn measured() -> Vec<(&'static str, PovNormal, [[f64; 3]; 4])> {
                             ..PovNormal::new(NormalKind::Bumps)
                         },
                         PovNormal::new(NormalKind::Dents),
-                    ],
+                    ]
+                    .into(),
                 ))
             },
             [

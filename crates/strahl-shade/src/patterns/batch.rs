@@ -248,7 +248,7 @@ mod tests {
                 Pattern::Hexagon.into(),
                 members().collect(),
             )),
-            pigment(Pigment::Average(pigments(), Box::default())),
+            pigment(Pigment::Average(pigments().into(), Box::default())),
             pigment(Pigment::UvMapped(Box::new(map(Pattern::Onion)))),
         ]
     }

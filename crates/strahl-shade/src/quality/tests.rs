@@ -40,8 +40,8 @@ fn quick_colors_are_shown_up_to_level_five() {
     let pigments = [
         quick(0.25, 0.75),
         Pigment::UvMapped(Box::new(quick(0.25, 0.75))),
-        Pigment::Average(vec![(1.0, quick(0.25, 0.75))], Box::default()),
-        Pigment::Blocks(Pattern::Checker.into(), vec![quick(0.25, 0.75)]),
+        Pigment::Average(vec![(1.0, quick(0.25, 0.75))].into(), Box::default()),
+        Pigment::Blocks(Pattern::Checker.into(), vec![quick(0.25, 0.75)].into()),
         Pigment::PigmentMap(
             Pattern::Bozo.into(),
             BlendMap::new(vec![(0.0, quick(0.25, 0.75))]),
@@ -70,10 +70,10 @@ fn normals_are_shown_from_level_eight() {
     };
     let textures = [
         bumpy(),
-        Texture::Layered(vec![Texture::default(), bumpy()]),
+        Texture::Layered(vec![Texture::default(), bumpy()].into()),
         Texture::UvMapped(Box::new(bumpy())),
-        Texture::Average(vec![(1.0, bumpy())], Box::default()),
-        Texture::Blocks(Pattern::Checker.into(), vec![bumpy()]),
+        Texture::Average(vec![(1.0, bumpy())].into(), Box::default()),
+        Texture::Blocks(Pattern::Checker.into(), vec![bumpy()].into()),
         Texture::Map(Pattern::Bozo.into(), BlendMap::new(vec![(0.0, bumpy())])),
     ];
     for texture in textures {

@@ -126,7 +126,7 @@ fn shades_as_measured() {
         ("plain", bluish(), [0.159106, 0.205905, 0.322896]),
         (
             "layered",
-            Texture::Layered(vec![bluish(), veil()]),
+            Texture::Layered(vec![bluish(), veil()].into()),
             [0.250584, 0.296361, 0.379644],
         ),
         (
@@ -140,7 +140,7 @@ fn shades_as_measured() {
         ("glass", glass(), [0.280003, 0.472007, 0.672007]),
         (
             "average",
-            Texture::Average(vec![(1.0, bluish()), (3.0, glass())], Box::default()),
+            Texture::Average(vec![(1.0, bluish()), (3.0, glass())].into(), Box::default()),
             [0.249775, 0.405478, 0.584726],
         ),
         (
@@ -152,7 +152,7 @@ fn shades_as_measured() {
             "checker",
             Texture::Blocks(
                 scaled(Pattern::Checker, scale(0.25, 0.25, 0.25)),
-                vec![bluish(), bumpy()],
+                vec![bluish(), bumpy()].into(),
             ),
             [0.21088, 0.120455, 0.075242],
         ),
@@ -192,7 +192,11 @@ fn what_is_below_an_opaque_layer_does_not_reflect() {
         };
         plain(color, dull()).into()
     };
-    let seen = |transmit| shade(&Texture::Layered(vec![below.clone(), above(transmit)]));
+    let seen = |transmit| {
+        shade(&Texture::Layered(
+            vec![below.clone(), above(transmit)].into(),
+        ))
+    };
     assert_eq!(seen(0.0), Color::BLACK);
     assert!(seen(0.5).r > 0.0);
 }
@@ -202,7 +206,7 @@ fn shares_sum_to_one() {
     let point = TexturePoint::in_space(DVec3::new(0.3, 0.2, 0.0));
     let mut paint = TexturePaint::default();
     let texture = Texture::Average(
-        vec![(1.0, bluish()), (2.0, veil()), (5.0, glass())],
+        vec![(1.0, bluish()), (2.0, veil()), (5.0, glass())].into(),
         Box::default(),
     );
     texture.layers_at(&point, 1.5, &mut paint);
@@ -227,7 +231,7 @@ fn shadows_are_attenuated_as_measured() {
     };
     let lower = layer(Color::BLACK, 0.0, 0.6);
     let upper = layer(Color::new(0.2, 0.5, 0.9), 0.5, 0.0);
-    let got = Texture::Layered(vec![lower, upper]).shadow_attenuation(&point);
+    let got = Texture::Layered(vec![lower, upper].into()).shadow_attenuation(&point);
     for (g, e) in got.to_array().iter().zip([0.06, 0.15, 0.27]) {
         assert!((g - e).abs() < 1e-12, "{got:?}");
     }
@@ -275,7 +279,7 @@ fn a_solid_layer_is_that_of_any_point() {
             assert_eq!(long.transmission, short.transmission);
         }
     }
-    let layered = Texture::Layered(vec![bluish(), veil()]);
+    let layered = Texture::Layered(vec![bluish(), veil()].into());
     let mut paint = TexturePaint::default();
     assert!(!layered.solid_layer(point.surface, normal, direction, 1.0, &mut paint));
 }

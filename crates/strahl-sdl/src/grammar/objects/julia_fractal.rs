@@ -53,6 +53,15 @@ pub(super) fn julia_fractal(p: &mut Parser<'_>) -> PResult<Entity> {
             }
         }
         let algebra = match (hypercomplex, function) {
+            // Measured; the other functions are what their names say.
+            (true, H::Cube) => {
+                p.warn_hint(
+                    place,
+                    "POV-Ray shows `hypercomplex` with `cube` as it shows `sqr`, and so does strahl",
+                    "write `sqr` for this set, or `pwr(3, 0)` for that of cubes",
+                );
+                JuliaAlgebra::Hypercomplex(H::Square)
+            }
             (true, function) => JuliaAlgebra::Hypercomplex(function),
             (false, H::Square) => JuliaAlgebra::Quaternion(QuaternionFunction::Square),
             (false, H::Cube) => JuliaAlgebra::Quaternion(QuaternionFunction::Cube),

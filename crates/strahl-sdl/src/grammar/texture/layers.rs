@@ -14,11 +14,9 @@ const LAYERS_TINT_SINCE: f64 = 3.105;
 pub(super) fn layered(lower: Surface, upper: Surface) -> Surface {
     let layers = |texture| match texture {
         Surface::Layered(layers) => layers,
-        single => vec![single],
+        single => vec![single].into(),
     };
-    let mut all = layers(lower);
-    all.extend(layers(upper));
-    Surface::Layered(all)
+    Surface::Layered([&*layers(lower), &*layers(upper)].concat().into())
 }
 
 fn straight_color(color: &mut ColorFt) {
@@ -29,12 +27,17 @@ fn straight_color(color: &mut ColorFt) {
 fn straight_pigment(pigment: &mut Pigment) {
     match pigment {
         Pigment::Solid(color, _) => straight_color(color),
-        Pigment::ColorMap(_, map) => map.entries.iter_mut().for_each(|(_, c)| straight_color(c)),
+        Pigment::ColorMap(_, map) => map
+            .entries
+            .make_mut()
+            .iter_mut()
+            .for_each(|(_, c)| straight_color(c)),
         Pigment::PigmentMap(_, map) => map
             .entries
+            .make_mut()
             .iter_mut()
             .for_each(|(_, p)| straight_pigment(p)),
-        Pigment::Blocks(_, list) => list.iter_mut().for_each(straight_pigment),
+        Pigment::Blocks(_, list) => list.make_mut().iter_mut().for_each(straight_pigment),
         Pigment::Image(image, _) => {
             let image = Arc::make_mut(image);
             image.transmit_all += image.filter_all;
@@ -46,7 +49,10 @@ fn straight_pigment(pigment: &mut Pigment) {
                 }
             }
         }
-        Pigment::Average(members, _) => members.iter_mut().for_each(|(_, p)| straight_pigment(p)),
+        Pigment::Average(members, _) => members
+            .make_mut()
+            .iter_mut()
+            .for_each(|(_, p)| straight_pigment(p)),
         Pigment::UvMapped(inner) => straight_pigment(inner),
         Pigment::Quick(color, inner) => {
             straight_color(color);
@@ -61,9 +67,15 @@ fn straight(texture: &mut Surface) {
         Surface::Layered(list)
         | Surface::Blocks(_, list)
         | Surface::MaterialMap(_, _, list)
-        | Surface::Shared(_, list) => list.iter_mut().for_each(straight),
-        Surface::Map(_, map) => map.entries.iter_mut().for_each(|(_, t)| straight(t)),
-        Surface::Average(members, _) => members.iter_mut().for_each(|(_, t)| straight(t)),
+        | Surface::Shared(_, list) => list.make_mut().iter_mut().for_each(straight),
+        Surface::Map(_, map) => map
+            .entries
+            .make_mut()
+            .iter_mut()
+            .for_each(|(_, t)| straight(t)),
+        Surface::Average(members, _) => {
+            members.make_mut().iter_mut().for_each(|(_, t)| straight(t))
+        }
         Surface::Transformed(_, inner) | Surface::UvMapped(inner) => straight(inner),
     }
 }
@@ -75,7 +87,7 @@ impl Parser<'_> {
             return;
         }
         if let Surface::Layered(layers) = Arc::make_mut(texture) {
-            layers.iter_mut().skip(1).for_each(straight);
+            layers.make_mut().iter_mut().skip(1).for_each(straight);
         }
     }
 }

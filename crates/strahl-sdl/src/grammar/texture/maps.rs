@@ -4,11 +4,11 @@ use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
-use strahl_shade::ColorFt;
 use strahl_shade::normal::{PovNormal, SlopeMap};
 use strahl_shade::patterns::{Modifiers, Pattern};
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::texture::Texture;
+use strahl_shade::{ColorFt, SharedList};
 
 /// A colour of the language as a colour of the renderer.
 pub(super) fn color_ft([r, g, b, filter, transmit]: [f64; 5]) -> ColorFt {
@@ -26,13 +26,10 @@ pub(super) fn blends_blocks(modifiers: &Modifiers) -> bool {
 }
 
 /// The blocks of a block pattern as a map, each at its index.
-pub(super) fn numbered<T>(members: Vec<T>) -> BlendMap<T> {
-    let members = members.into_iter().enumerate();
-    BlendMap::new(
-        members
-            .map(|(number, member)| (number as f64, member))
-            .collect(),
-    )
+pub(super) fn numbered<T: Clone>(members: &[T]) -> BlendMap<T> {
+    let members = members.iter().enumerate();
+    let entries = members.map(|(number, member)| (number as f64, member.clone()));
+    BlendMap::new(entries.collect::<SharedList<_>>())
 }
 
 impl Parser<'_> {
@@ -125,7 +122,7 @@ impl Parser<'_> {
         self.braces(|p| {
             let place = p.place();
             let named = p.accept_thing(pick)?;
-            let mut entries = named.map_or_else(Vec::new, |map| map.entries.clone());
+            let mut entries = Vec::new();
             p.items(what, |p, token| {
                 if token.is(Word::BlendMode) || token.is(Word::BlendGamma) {
                     return p.skip_item(token, what);
@@ -142,10 +139,14 @@ impl Parser<'_> {
                 p.expect(Kind::RightBracket)?;
                 Ok(())
             })?;
-            if entries.is_empty() {
-                return Err(p.fail(place, format!("this {what} has no entries")));
+            match named {
+                Some(map) if entries.is_empty() => Ok((*map).clone()),
+                Some(map) => Ok(BlendMap::new([&*map.entries, &entries].concat())),
+                None if entries.is_empty() => {
+                    Err(p.fail(place, format!("this {what} has no entries")))
+                }
+                None => Ok(BlendMap::new(entries)),
             }
-            Ok(BlendMap::new(entries))
         })
     }
 
@@ -178,15 +179,17 @@ impl Parser<'_> {
     }
 
     /// The map, with a warning if its positions decrease; a position that is not a number becomes that before it.
-    pub(super) fn in_order<T>(&mut self, mut map: BlendMap<T>) -> BlendMap<T> {
-        let mut before = f64::NEG_INFINITY;
-        let mut falls = false;
-        for (at, _) in &mut map.entries {
-            falls |= !(*at >= before);
-            if at.is_nan() {
-                *at = before;
+    pub(super) fn in_order<T: Clone>(&mut self, mut map: BlendMap<T>) -> BlendMap<T> {
+        let unknown = map.entries.iter().any(|(at, _)| at.is_nan());
+        let falls = unknown || !map.entries.is_sorted_by_key(|(at, _)| *at);
+        if unknown {
+            let mut before = f64::NEG_INFINITY;
+            for (at, _) in map.entries.make_mut() {
+                if at.is_nan() {
+                    *at = before;
+                }
+                before = *at;
             }
-            before = *at;
         }
         if falls {
             let place = self.place();
@@ -208,7 +211,7 @@ impl Parser<'_> {
         mut between: impl FnMut(&mut Self) -> PResult<()>,
         mut block: impl FnMut(&mut Self) -> PResult<T>,
         missing: impl FnOnce(&Self) -> T,
-    ) -> PResult<Option<Vec<T>>> {
+    ) -> PResult<Option<SharedList<T>>> {
         let Some(count) = pattern.block_count() else {
             return Ok(None);
         };
@@ -235,6 +238,6 @@ impl Parser<'_> {
             return Ok(None);
         }
         list.resize(count, missing(self));
-        Ok(Some(list))
+        Ok(Some(list.into()))
     }
 }

@@ -3,10 +3,10 @@ use crate::parser::Parser;
 use std::sync::Arc;
 use strahl_math::Transform;
 use strahl_scene::{Object, ObjectKind};
-use strahl_shade::Material;
 use strahl_shade::interior::Interior;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::{SharedTexture, Texture as Surface};
+use strahl_shade::{Material, SharedList};
 
 /// The number of recent materials with patterns that can be shared.
 const RECENT: usize = 16;
@@ -99,7 +99,7 @@ pub(in crate::grammar) fn is_bare(material: &Material) -> bool {
 
 /// The texture of a blob whose components have textures, as long as that of the whole is not known: it paints nothing.
 fn missing() -> Surface {
-    Surface::Average(vec![], Box::default())
+    Surface::Average(SharedList::default(), Box::default())
 }
 
 /// The texture with that of the whole where it is missing, which then is missing on both sides; `None` if nothing is missing.
@@ -110,7 +110,7 @@ fn filled(texture: &SharedTexture, whole: &Surface) -> Option<SharedTexture> {
     let is_missing = |t: &Surface| matches!(t, Surface::Average(list, _) if list.is_empty());
     members.first().filter(|first| is_missing(first))?;
     let mut members = members.clone();
-    members[0] = whole.clone();
+    members.make_mut()[0] = whole.clone();
     let surface = Surface::Shared(Arc::clone(shares), members);
     Some(SharedTexture(Arc::new(surface)))
 }

@@ -7,6 +7,7 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use strahl_math::Transform;
+use strahl_shade::SharedList;
 use strahl_shade::normal::{NormalKind, PovNormal, SlopeMap};
 use strahl_shade::patterns::Pattern;
 use strahl_shade::pigment::BlendMap;
@@ -29,7 +30,7 @@ enum Choice {
     Own,
     Slopes(SlopeMap),
     Normals(BlendMap<PovNormal>),
-    Blocks(Vec<PovNormal>),
+    Blocks(SharedList<PovNormal>),
 }
 
 impl Choice {
@@ -37,7 +38,7 @@ impl Choice {
     /// become a map at 0, 1, 2 and so on (measured).
     fn of_pattern(self) -> Self {
         match self {
-            Self::Blocks(list) => Self::Normals(numbered(list)),
+            Self::Blocks(list) => Self::Normals(numbered(&list)),
             other => other,
         }
     }
@@ -55,7 +56,7 @@ pub(super) struct Draft {
 
 /// A normal without perturbation.
 pub(super) fn flat() -> PovNormal {
-    PovNormal::new(NormalKind::Average(vec![]))
+    PovNormal::new(NormalKind::Average(SharedList::default()))
 }
 
 impl From<PovNormal> for Draft {
@@ -68,7 +69,7 @@ impl From<PovNormal> for Draft {
                 special: false,
             };
         }
-        let kind = std::mem::replace(&mut normal.kind, NormalKind::Average(vec![]));
+        let kind = std::mem::replace(&mut normal.kind, NormalKind::Average(SharedList::default()));
         let (chooser, choice, special) = match kind {
             NormalKind::Bumps => (Chooser::Pattern(Pattern::Bozo), Choice::Own, true),
             NormalKind::Dents => (Chooser::Pattern(Pattern::Dents), Choice::Own, true),
@@ -120,16 +121,16 @@ impl From<PovNormal> for Draft {
 impl Draft {
     pub(super) fn finish(self) -> PovNormal {
         let kind = match (self.chooser, self.choice) {
-            (Chooser::Flat, _) => NormalKind::Average(vec![]),
+            (Chooser::Flat, _) => NormalKind::Average(SharedList::default()),
             (Chooser::Fixed(kind), _) => kind,
             (Chooser::UvMapped(normal), _) => return *normal,
             (Chooser::Average, Choice::Normals(map)) => NormalKind::Average(map.entries),
-            (Chooser::Average, _) => NormalKind::Average(vec![]),
+            (Chooser::Average, _) => NormalKind::Average(SharedList::default()),
             (Chooser::Pattern(pattern), Choice::Normals(map)) => NormalKind::Map(pattern, map),
             (Chooser::Pattern(pattern), Choice::Blocks(list))
                 if blends_blocks(&self.normal.modifiers) =>
             {
-                NormalKind::Map(pattern, numbered(list))
+                NormalKind::Map(pattern, numbered(&list))
             }
             (Chooser::Pattern(pattern), Choice::Blocks(list)) => NormalKind::Blocks(pattern, list),
             (Chooser::Pattern(pattern), choice) => match pattern {
@@ -166,9 +167,16 @@ pub(super) fn transform(normal: &mut PovNormal, by: &Transform) {
 fn keep_bumps(normal: &mut PovNormal) {
     normal.no_bump_scale = true;
     match &mut normal.kind {
-        NormalKind::Map(_, map) => map.entries.iter_mut().for_each(|(_, n)| keep_bumps(n)),
-        NormalKind::Blocks(_, normals) => normals.iter_mut().for_each(keep_bumps),
-        NormalKind::Average(members) => members.iter_mut().for_each(|(_, n)| keep_bumps(n)),
+        NormalKind::Map(_, map) => map
+            .entries
+            .make_mut()
+            .iter_mut()
+            .for_each(|(_, n)| keep_bumps(n)),
+        NormalKind::Blocks(_, normals) => normals.make_mut().iter_mut().for_each(keep_bumps),
+        NormalKind::Average(members) => members
+            .make_mut()
+            .iter_mut()
+            .for_each(|(_, n)| keep_bumps(n)),
         _ => {}
     }
 }
@@ -283,7 +291,7 @@ impl Parser<'_> {
         if let Some(pattern) = self.pattern(token)? {
             draft.special = token.is(Word::Bumps);
             let before = match &draft.chooser {
-                Chooser::UvMapped(inner) => Choice::Normals(numbered(vec![PovNormal {
+                Chooser::UvMapped(inner) => Choice::Normals(numbered(&[PovNormal {
                     uv_mapped: false,
                     ..PovNormal::clone(inner)
                 }])),

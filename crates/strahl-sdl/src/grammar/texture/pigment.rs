@@ -12,7 +12,7 @@ use strahl_math::Transform;
 use strahl_shade::image_map::ImageMap;
 use strahl_shade::patterns::{FractalKind, Modifiers, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
-use strahl_shade::{Color, ColorFt};
+use strahl_shade::{Color, ColorFt, SharedList};
 
 /// The part of a pigment that selects the colour.
 #[derive(Clone)]
@@ -35,7 +35,7 @@ enum Choice {
     Usual(BlendMap<ColorFt>),
     Colors(BlendMap<ColorFt>),
     Pigments(BlendMap<Pigment>),
-    Blocks(Vec<Pigment>),
+    Blocks(SharedList<Pigment>),
 }
 
 impl Choice {
@@ -44,12 +44,7 @@ impl Choice {
     fn of_pattern(self, word: Option<Word>) -> Self {
         match self {
             Self::Default(_) | Self::Usual(_) => Self::Default(word),
-            Self::Blocks(list) => {
-                let numbered = list.into_iter().enumerate();
-                Self::Pigments(BlendMap::new(
-                    numbered.map(|(i, pigment)| (i as f64, pigment)).collect(),
-                ))
-            }
+            Self::Blocks(list) => Self::Pigments(numbered(&list)),
             map => map,
         }
     }
@@ -65,9 +60,9 @@ pub(super) struct Draft {
 }
 
 /// A block pattern with the pigments of its blocks.
-fn of_blocks(field: Box<PatternField>, list: Vec<Pigment>) -> Pigment {
+fn of_blocks(field: Box<PatternField>, list: SharedList<Pigment>) -> Pigment {
     if blends_blocks(&field.modifiers) {
-        return Pigment::PigmentMap(field, numbered(list));
+        return Pigment::PigmentMap(field, numbered(&list));
     }
     Pigment::Blocks(field, list)
 }
@@ -105,7 +100,7 @@ impl From<Pigment> for Draft {
             ),
             Pigment::UvMapped(inner) => draft(
                 Chooser::UvMapped,
-                Choice::Pigments(numbered(vec![*inner])),
+                Choice::Pigments(numbered(&[*inner])),
                 Modifiers::default(),
             ),
             Pigment::Quick(color, inner) => Self {
@@ -142,7 +137,7 @@ impl Draft {
             Chooser::Average => {
                 let members = match choice {
                     Choice::Pigments(map) => map.entries,
-                    _ => vec![],
+                    _ => SharedList::default(),
                 };
                 Pigment::Average(members, Box::new(modifiers))
             }
@@ -162,8 +157,8 @@ impl Draft {
                 }
             }
             Chooser::UvMapped => match choice {
-                Choice::Pigments(map) => match map.entries.into_iter().next() {
-                    Some((_, first)) => Pigment::UvMapped(Box::new(first)),
+                Choice::Pigments(map) => match map.entries.first() {
+                    Some((_, first)) => Pigment::UvMapped(Box::new(first.clone())),
                     None => Pigment::default(),
                 },
                 Choice::Colors(map) => match map.entries.first() {
@@ -202,7 +197,7 @@ fn default_colors(pattern: &Pattern) -> Option<&'static [ColorFt]> {
     })
 }
 
-fn default_blocks(pattern: &Pattern) -> Option<Vec<Pigment>> {
+fn default_blocks(pattern: &Pattern) -> Option<SharedList<Pigment>> {
     let colors = default_colors(pattern)?;
     Some(colors.iter().copied().map(Pigment::from).collect())
 }
@@ -397,9 +392,9 @@ impl Parser<'_> {
                     // The average of colours is an average of uniform pigments.
                     Chooser::Average => Choice::Pigments(BlendMap::new(
                         map.entries
-                            .into_iter()
-                            .map(|(weight, color)| (weight, color.into()))
-                            .collect(),
+                            .iter()
+                            .map(|(weight, color)| (*weight, (*color).into()))
+                            .collect::<SharedList<_>>(),
                     )),
                     _ => Choice::Colors(self.in_order(map)),
                 };
@@ -467,7 +462,7 @@ impl Parser<'_> {
     }
 
     /// The colours or pigments for the blocks of a block pattern; `None` if none follow.
-    fn block_pigments(&mut self, pattern: &Pattern) -> PResult<Option<Vec<Pigment>>> {
+    fn block_pigments(&mut self, pattern: &Pattern) -> PResult<Option<SharedList<Pigment>>> {
         let Some(count) = pattern.block_count() else {
             return Ok(None);
         };
@@ -500,9 +495,9 @@ impl Parser<'_> {
             let default = self.default_pigment();
             list.resize(count, default);
         } else if let Some(defaults) = default_blocks(pattern) {
-            list.extend(defaults.into_iter().skip(list.len()));
+            list.extend(defaults.iter().skip(list.len()).cloned());
         }
-        Ok(Some(list))
+        Ok(Some(list.into()))
     }
 
     /// The closing brace after the object and colours of an object pattern; colours may also follow it.

@@ -9,6 +9,7 @@ use crate::keywords::Word;
 use crate::parser::{Failed, PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
+use strahl_shade::SharedList;
 use strahl_shade::normal::PovNormal;
 use strahl_shade::patterns::{Modifiers, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
@@ -26,7 +27,7 @@ enum Chooser {
 enum Choice {
     Nothing,
     Map(BlendMap<Surface>),
-    Blocks(Vec<Surface>),
+    Blocks(SharedList<Surface>),
 }
 
 /// A texture being read.
@@ -88,7 +89,7 @@ impl Draft {
                 match choice {
                     Choice::Map(map) => Surface::Map(field, map),
                     Choice::Blocks(list) if blends_blocks(&field.modifiers) => {
-                        Surface::Map(field, numbered(list))
+                        Surface::Map(field, numbered(&list))
                     }
                     Choice::Blocks(list) => Surface::Blocks(field, list),
                     Choice::Nothing => self.single,
@@ -116,7 +117,8 @@ fn on_surface_but_normals(texture: Surface) -> Surface {
             Surface::Plain(plain)
         }
         Surface::Layered(layers) => {
-            Surface::Layered(layers.into_iter().map(on_surface_but_normals).collect())
+            let layers = layers.iter().cloned();
+            Surface::Layered(layers.map(on_surface_but_normals).collect())
         }
         mapped @ Surface::UvMapped(_) => mapped,
         patterned => Surface::UvMapped(Box::new(patterned)),
@@ -125,22 +127,39 @@ fn on_surface_but_normals(texture: Surface) -> Surface {
 
 /// Makes `uv_mapping` of the normals ineffective, as it is in the members of patterned textures.
 fn normals_in_space(texture: &mut Surface) {
+    if !has_mapped_normals(texture) {
+        return;
+    }
     match texture {
         Surface::Plain(plain) => {
-            if let Some(normal) = plain.normal.as_mut().filter(|normal| normal.uv_mapped) {
+            if let Some(normal) = &mut plain.normal {
                 normal.uv_mapped = false;
             }
         }
         Surface::Layered(list)
         | Surface::Blocks(_, list)
         | Surface::MaterialMap(_, _, list)
-        | Surface::Shared(_, list) => list.iter_mut().for_each(normals_in_space),
-        Surface::Map(_, map) => map
-            .entries
-            .iter_mut()
-            .for_each(|(_, t)| normals_in_space(t)),
-        Surface::Average(members, _) => members.iter_mut().for_each(|(_, t)| normals_in_space(t)),
+        | Surface::Shared(_, list) => list.make_mut().iter_mut().for_each(normals_in_space),
+        Surface::Map(_, BlendMap { entries }) | Surface::Average(entries, _) => {
+            let entries = entries.make_mut().iter_mut();
+            entries.for_each(|(_, member)| normals_in_space(member));
+        }
         Surface::Transformed(_, inner) | Surface::UvMapped(inner) => normals_in_space(inner),
+    }
+}
+
+/// Whether a normal in it has `uv_mapping`.
+fn has_mapped_normals(texture: &Surface) -> bool {
+    match texture {
+        Surface::Plain(plain) => plain.normal.as_ref().is_some_and(|n| n.uv_mapped),
+        Surface::Layered(list)
+        | Surface::Blocks(_, list)
+        | Surface::MaterialMap(_, _, list)
+        | Surface::Shared(_, list) => list.iter().any(has_mapped_normals),
+        Surface::Map(_, BlendMap { entries }) | Surface::Average(entries, _) => {
+            entries.iter().any(|(_, member)| has_mapped_normals(member))
+        }
+        Surface::Transformed(_, inner) | Surface::UvMapped(inner) => has_mapped_normals(inner),
     }
 }
 
@@ -389,7 +408,7 @@ impl Parser<'_> {
         list.reverse();
         modifiers::begin(&mut draft.modifiers, &Pattern::Checker);
         draft.chooser = Chooser::Pattern(Pattern::Checker);
-        draft.choice = Choice::Blocks(list);
+        draft.choice = Choice::Blocks(list.into());
         Ok(())
     }
 
@@ -414,7 +433,7 @@ impl Parser<'_> {
             ));
         }
         draft.single = match image {
-            Some(image) => Surface::MaterialMap(image, Box::default(), list),
+            Some(image) => Surface::MaterialMap(image, Box::default(), list.into()),
             None => list.swap_remove(0),
         };
         draft.chooser = Chooser::Single;

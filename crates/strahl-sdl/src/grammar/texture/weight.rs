@@ -142,7 +142,7 @@ mod tests {
         let map = BlendMap::new(vec![(0.0, solid.clone()), (1.0, solid.clone())]);
         let two = Pigment::PigmentMap(Pattern::Bozo.into(), map);
         assert_eq!(of_pigment(&two), Weight { count: 3, depth: 2 });
-        let outer = Pigment::Blocks(Pattern::Checker.into(), vec![solid, two]);
+        let outer = Pigment::Blocks(Pattern::Checker.into(), vec![solid, two].into());
         assert_eq!(of_pigment(&outer), Weight { count: 5, depth: 3 });
     }
 }

@@ -35,7 +35,7 @@ pub(super) fn blended(corners: [DVec3; 3], textures: [&Texture; 3]) -> Texture {
     };
     let members = textures.map(|t| Surface::clone(&t.surface));
     Texture {
-        surface: Arc::new(Surface::Shared(Arc::new(shares), members.to_vec())),
+        surface: Arc::new(Surface::Shared(Arc::new(shares), members.to_vec().into())),
         ..textures[0].clone()
     }
 }
