@@ -243,6 +243,10 @@ impl Bounds {
     /// [`Bounds::mul`] in all cases, such as products that are zero or not finite.
     #[inline(never)]
     fn mul_any(self, other: Self) -> Self {
+        if let Some((min, max)) = outer_products(self, other) {
+            let nan = self.nan | other.nan;
+            return Self { min, max, nan };
+        }
         if self.is_empty() || other.is_empty() {
             return Self::NAN;
         }
@@ -332,6 +336,33 @@ impl Bounds {
         result
     }
 
+    /// [`corners`](Self::corners) of a library function that has a value at each of them, in this range and with this relative error.
+    fn library_corners(
+        self,
+        other: Self,
+        f: impl Fn(f64, f64) -> f64,
+        error: f64,
+        (least, most): (f64, f64),
+    ) -> Self {
+        let at = |a: f64, b: f64| {
+            let value = f(a, b);
+            let (low, high) = (below(value, error), above(value, error));
+            (upper(low, least), lower(high, most))
+        };
+        let is_single = |x: Self| x.min.to_bits() == x.max.to_bits();
+        let along = |b: f64| {
+            let (from, to) = (at(self.min, b), at(self.max, b));
+            (lower(from.0, to.0), upper(from.1, to.1))
+        };
+        let (mut min, mut max) = along(other.min);
+        if !is_single(other) {
+            let (low, high) = along(other.max);
+            (min, max) = (lower(min, low), upper(max, high));
+        }
+        let nan = self.nan || other.nan;
+        Self { min, max, nan }
+    }
+
     #[inline]
     pub(crate) fn sqrt(self) -> Self {
         if self.min > 0.0 && !self.is_empty() && self.max < f64::INFINITY {
@@ -417,9 +448,8 @@ impl Bounds {
 
     /// Bounds of the powers of the absolute values.
     fn powers(self, exponent: Self) -> Self {
-        let down = |a: f64, b: f64| upper(below(det::pow(a.abs(), b), POWER_ERROR), 0.0);
-        let up = |a: f64, b: f64| above(det::pow(a.abs(), b), POWER_ERROR);
-        self.corners(exponent, down, up)
+        let power = |a: f64, b: f64| det::pow(a.abs(), b);
+        self.library_corners(exponent, power, POWER_ERROR, (0.0, f64::INFINITY))
     }
 
     /// The remainder of truncated division, with the sign of the dividend.
@@ -445,20 +475,43 @@ impl Bounds {
     }
 
     /// Bounds of `det::sin` (`phase` 0) and `det::cos` (`phase` 0.25: a quarter turn ahead).
+    #[inline]
     pub(crate) fn wave(self, f: impl Fn(f64) -> f64, phase: f64) -> Self {
+        self.all_phases()
+            .unwrap_or_else(|| self.wave_between(f(self.min), f(self.max), phase))
+    }
+
+    /// Bounds of `det::sin` and of `det::cos`.
+    #[inline]
+    pub(crate) fn waves(self) -> [Self; 2] {
+        if let Some(all) = self.all_phases() {
+            return [all, all];
+        }
+        let (from, to) = (det::sin_cos(self.min), det::sin_cos(self.max));
+        [
+            self.wave_between(from.0, to.0, 0.0),
+            self.wave_between(from.1, to.1, 0.25),
+        ]
+    }
+
+    /// Bounds of sine and cosine that need not be computed.
+    #[inline(always)]
+    fn all_phases(self) -> Option<Self> {
         if self.is_empty() {
-            return self;
+            return Some(self);
         }
         let full = Self::new(-1.0, 1.0).with_nan(self.nan || self.is_unbounded());
-        if !(self.min > -PERIODS && self.max < PERIODS) {
-            return full;
-        }
+        (!(self.min > -PERIODS && self.max < PERIODS)).then_some(full)
+    }
+
+    /// [`wave`](Self::wave) with these values at its ends.
+    #[inline(always)]
+    fn wave_between(self, a: f64, b: f64, phase: f64) -> Self {
         // In turns after a maximum; the margin exceeds every rounding up to PERIODS.
         let (from, to) = (
             self.min / std::f64::consts::TAU + phase - 0.25 - 1e-9,
             self.max / std::f64::consts::TAU + phase - 0.25 + 1e-9,
         );
-        let (a, b) = (f(self.min), f(self.max));
         Self {
             min: if (from + 0.5).floor() < (to + 0.5).floor() {
                 -1.0
@@ -502,9 +555,7 @@ impl Bounds {
         let clear = self.min > 0.0 || self.max < 0.0 || x.min > 0.0 || above_axis && x.max < 0.0;
         let pi = PI.next_up();
         if clear {
-            let down = |a, b| upper(below(det::atan2(a, b), LIBRARY_ERROR), -pi);
-            let up = |a, b| lower(above(det::atan2(a, b), LIBRARY_ERROR), pi);
-            let angles = self.corners(x, down, up);
+            let angles = self.library_corners(x, det::atan2, LIBRARY_ERROR, (-pi, pi));
             return Self { nan, ..angles };
         }
         Self::new(if above_axis { 0.0 } else { -pi }, pi).with_nan(nan)
@@ -597,6 +648,35 @@ fn outer([a, b, c, d]: [f64; 4]) -> Option<(f64, f64)> {
     Some((
         stepped(less(less(a, b), less(c, d)), -1),
         stepped(greater(greater(a, b), greater(c, d)), 1),
+    ))
+}
+
+/// The least and the largest of the products of the ends, rounded outwards, if all are finite and none is zero but those with a factor that is.
+#[inline(always)]
+fn outer_products(a: Bounds, b: Bounds) -> Option<(f64, f64)> {
+    let pairs = [
+        (a.min, b.min),
+        (a.min, b.max),
+        (a.max, b.min),
+        (a.max, b.max),
+    ];
+    let (mut sum, mut vanishes) = (0.0, false);
+    for (x, y) in pairs {
+        sum += (x * y).abs();
+        vanishes |= x * y == 0.0 && x != 0.0 && y != 0.0;
+    }
+    if !(sum < f64::INFINITY) || vanishes {
+        return None;
+    }
+    let [p, q, r, s] = pairs.map(|(x, y)| x * y);
+    let (min, max) = (
+        lower(lower(p, q), lower(r, s)),
+        upper(upper(p, q), upper(r, s)),
+    );
+    // Products that are zero are exact.
+    Some((
+        stepped(min, -i64::from(min != 0.0)),
+        stepped(max, i64::from(max != 0.0)),
     ))
 }
 

@@ -369,6 +369,13 @@ impl Domain for Dual {
     }
     #[inline(always)]
     fn unary(op: UnaryOp, a: Self) -> Self {
+        if matches!(op, UnaryOp::Sin | UnaryOp::Cos) {
+            let (sin, cos) = det::sin_cos(a.value);
+            return match op {
+                UnaryOp::Sin => Self::number(sin).along(a, cos),
+                _ => Self::number(cos).along(a, -sin),
+            };
+        }
         let value = op.value(a.value);
         Self::number(value).along(a, op.slope(a.value, value))
     }

@@ -172,6 +172,14 @@ impl Domain for Rate {
     }
     #[inline(always)]
     fn unary(op: UnaryOp, a: Self) -> Self {
+        if matches!(op, UnaryOp::Sin | UnaryOp::Cos) && !a.is_constant() {
+            let [sin, cos] = a.value.waves();
+            let (value, slope) = match op {
+                UnaryOp::Sin => (sin, cos),
+                _ => (cos, sin.neg()),
+            };
+            return Self::new(value, a.rate.mul(slope));
+        }
         let value = op.bounds(a.value);
         if a.is_constant() {
             return Self::constant_within(value);

@@ -41,6 +41,18 @@ fn folding_keeps_signed_zeros() {
 }
 
 #[test]
+fn powers_of_a_half_are_roots() {
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let half = g.constant(0.5);
+    let power = g.pow(x, half);
+    assert_eq!(power, g.sqrt(x));
+    let f = g.finish(power).expect("small");
+    assert_eq!(value(&f, &[2.0]), 2f64.sqrt());
+    assert!(value(&f, &[-2.0]).is_nan());
+}
+
+#[test]
 fn u_and_v_are_other_names_of_x_and_y() {
     let mut g = Graph::new(["u", "v"]);
     let (u, x) = (g.parameter("u"), g.parameter("x"));

@@ -18,12 +18,12 @@ pub fn sin(x: f64) -> f64 {
 
 /// Cosine of `x` radians.
 pub fn cos(x: f64) -> f64 {
-    libm::cos(x)
+    sine::cosine(x)
 }
 
 /// Sine and cosine of `x` radians, with the bits of [`sin`] and [`cos`].
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    libm::sincos(x)
+    sine::sine_and_cosine(x)
 }
 
 /// Tangent of `x` radians.

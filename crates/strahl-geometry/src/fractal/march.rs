@@ -1,7 +1,7 @@
 //! A ray on its way through the cells that may have a surface of a set of orbits.
 
 use super::orbit_set::{BALL, Event, LINE_BATCH, OrbitSet, Places, SURFACE};
-use crate::implicit::{Content, Visitor};
+use crate::implicit::{Cell, Content, Visitor};
 use std::ops::ControlFlow;
 use strahl_math::roots::find_crossing;
 use strahl_math::{Aabb, DVec3};
@@ -281,7 +281,7 @@ impl<S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, S, V
         }
     }
 
-    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+    fn part(&mut self, enter: f64, exit: f64, _: &Cell<'_>) -> ControlFlow<()> {
         let exit = if exit < self.length {
             exit
         } else {

@@ -6,6 +6,7 @@ mod height_field;
 mod isosurface;
 mod octree;
 mod parametric;
+mod slopes;
 mod workspace;
 
 pub use container::Container;
@@ -13,5 +14,5 @@ pub(crate) use container::Passage;
 pub use grid_isosurface::{GridIsosurface, GridOptions};
 pub use height_field::HeightField;
 pub use isosurface::{Isosurface, IsosurfaceOptions};
-pub(crate) use octree::{Content, Octree, Visitor};
+pub(crate) use octree::{Cell, Content, Octree, Visitor};
 pub use parametric::{Parametric, ParametricOptions};

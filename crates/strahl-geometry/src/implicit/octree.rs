@@ -1,5 +1,6 @@
 //! An octree of the cells that may contain a surface, examined when a ray first meets them.
 
+use super::slopes::{Notes, Slopes};
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
@@ -19,10 +20,26 @@ pub(crate) trait Visitor {
         ControlFlow::Continue(())
     }
     /// A part of the line within a cell that may contain a surface.
-    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()>;
+    fn part(&mut self, enter: f64, exit: f64, cell: &Cell<'_>) -> ControlFlow<()>;
     /// Parts of the line that end before this are not needed.
     fn resume(&self) -> f64 {
         f64::NEG_INFINITY
+    }
+}
+
+/// One of the smallest cells, which may contain a surface.
+pub(crate) struct Cell<'a> {
+    tree: &'a Octree,
+    node: &'a Node,
+    place: [u32; 3],
+}
+
+impl Cell<'_> {
+    /// Bounds of the derivatives of a function within the cell, which `make` finds; `None` as long as they are not worthwhile.
+    pub(crate) fn slopes(&self, make: impl FnOnce(&Aabb) -> Slopes) -> Option<&Slopes> {
+        let notes = self.node.notes.get_or_init(Box::default);
+        let slot = Slot::of(self.place, 0);
+        notes.slopes(slot.0 as usize, || make(&self.tree.cell(self.place, 0)))
     }
 }
 
@@ -68,6 +85,8 @@ struct Node {
     full_blocks: AtomicU8,
     /// The nodes of the cells, once one of them is met. The smallest cells have none.
     children: OnceLock<Box<[Node; 64]>>,
+    /// What is noted about the smallest cells that may contain a surface.
+    notes: OnceLock<Box<Notes>>,
 }
 
 /// Where a cell is in its node.
@@ -299,7 +318,12 @@ impl Octree {
             if found.is_full {
                 let enter = line.enter(place);
                 if enter < until && until >= range.min {
-                    visitor.part(enter, until)?;
+                    let cell = Cell {
+                        tree: self,
+                        node: found.node,
+                        place: line.turned(place),
+                    };
+                    visitor.part(enter, until, &cell)?;
                     let resume = visitor.resume();
                     if resume > next {
                         next = resume;
@@ -455,7 +479,7 @@ mod tests {
             self.side = is_inside;
             ControlFlow::Continue(())
         }
-        fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+        fn part(&mut self, enter: f64, exit: f64, _: &Cell<'_>) -> ControlFlow<()> {
             self.found.push((enter, exit));
             ControlFlow::Continue(())
         }
@@ -567,7 +591,7 @@ mod tests {
             fn content(&mut self, _: &Aabb) -> Content {
                 Content::Surface
             }
-            fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+            fn part(&mut self, enter: f64, exit: f64, _: &Cell<'_>) -> ControlFlow<()> {
                 self.found.push((enter, exit));
                 ControlFlow::Continue(())
             }

@@ -44,15 +44,25 @@ const COS: [f64; 6] = [
     -1.13596475577881948265e-11,
 ];
 
-/// The sine of an angle in radians, with the bits of the `libm` crate.
+/// Below this the sine is the angle, or the sign of zero counts.
+const TINY: f64 = 1e-7;
+
+/// An angle less the nearest multiple of π/2: `y + lost`.
+struct Rest {
+    y: f64,
+    lost: f64,
+    /// The multiple.
+    quadrant: i32,
+}
+
+/// The rest of an angle, with the bits of the `libm` crate; `None` where it does something else: where angles are large ([`LARGE`]) or hardly more
+/// than π/4, where they lie in the middle between two multiples (it may take the other one), and where they lie so close to a multiple that
+/// bits are lost (16 of them). The bounds are a little narrower than its own.
 #[inline(always)]
-pub(super) fn sine(x: f64) -> f64 {
+fn reduced(x: f64) -> Option<Rest> {
     let size = x.abs();
-    // `libm` does something else where angles are small (below π/4) or large ([`LARGE`]), where they lie in the middle between two multiples
-    // (it may take the other one), and where they lie so close to a multiple that bits are lost (16 of them). The bounds are a little
-    // narrower than its own.
     if !(0.8..=LARGE).contains(&size) {
-        return libm::sin(x);
+        return None;
     }
     let multiple = (x * TWO_BY_PI + ROUND) - ROUND;
     let exact = x - multiple * HALF_PI;
@@ -60,26 +70,117 @@ pub(super) fn sine(x: f64) -> f64 {
     let y = exact - rest;
     let lost = (exact - y) - rest;
     let part = y.abs();
-    if !(part <= 0.7853 && size * (1.0 / 8192.0) <= part) {
-        return libm::sin(x);
-    }
     let quadrant = multiple as i32;
-    let value = if quadrant & 1 == 0 {
-        let z = y * y;
+    (part <= 0.7853 && size * (1.0 / 8192.0) <= part).then_some(Rest { y, lost, quadrant })
+}
+
+impl Rest {
+    #[inline(always)]
+    fn sine(&self) -> f64 {
+        let z = self.y * self.y;
         let w = z * z;
         let r = (SIN[1] + z * (SIN[2] + z * SIN[3])) + (z * w) * (SIN[4] + z * SIN[5]);
-        let v = z * y;
-        y - (((z * (0.5 * lost - v * r)) - lost) - v * SIN[0])
-    } else {
-        let z = y * y;
-        let w = z * z;
-        let low = z * (COS[0] + z * (COS[1] + z * COS[2]));
-        let high = (w * w) * (COS[3] + z * (COS[4] + z * COS[5]));
-        let half = 0.5 * z;
-        let w = 1.0 - half;
-        w + (((1.0 - w) - half) + (z * (low + high) - y * lost))
-    };
-    if quadrant & 2 == 0 { value } else { -value }
+        let v = z * self.y;
+        self.y - (((z * (0.5 * self.lost - v * r)) - self.lost) - v * SIN[0])
+    }
+
+    #[inline(always)]
+    fn cosine(&self) -> f64 {
+        small_cosine(self.y, self.lost)
+    }
+
+    /// The first in even quadrants, the second in odd ones; with the other sign two quadrants further.
+    #[inline(always)]
+    fn by_quadrant(&self, even: f64, odd: f64, turned: i32) -> f64 {
+        let value = if self.quadrant & 1 == 0 { even } else { odd };
+        if (self.quadrant + turned) & 2 == 0 {
+            value
+        } else {
+            -value
+        }
+    }
+}
+
+/// Whether an angle is so small that it is not reduced.
+#[inline(always)]
+fn is_small(x: f64) -> bool {
+    (TINY..=0.785).contains(&x.abs())
+}
+
+/// The sine of a [small](is_small) angle.
+#[inline(always)]
+fn small_sine(x: f64) -> f64 {
+    let z = x * x;
+    let w = z * z;
+    let r = (SIN[1] + z * (SIN[2] + z * SIN[3])) + (z * w) * (SIN[4] + z * SIN[5]);
+    x + (z * x) * (SIN[0] + z * r)
+}
+
+/// The cosine of `y + lost`, a small angle.
+#[inline(always)]
+fn small_cosine(y: f64, lost: f64) -> f64 {
+    let z = y * y;
+    let w = z * z;
+    let low = z * (COS[0] + z * (COS[1] + z * COS[2]));
+    let high = (w * w) * (COS[3] + z * (COS[4] + z * COS[5]));
+    let half = 0.5 * z;
+    let w = 1.0 - half;
+    w + (((1.0 - w) - half) + (z * (low + high) - y * lost))
+}
+
+/// The sine of an angle in radians, with the bits of the `libm` crate.
+#[inline(always)]
+pub(super) fn sine(x: f64) -> f64 {
+    if is_small(x) {
+        return small_sine(x);
+    }
+    reduced(x).map_or_else(
+        || libm::sin(x),
+        |rest| {
+            let is_even = rest.quadrant & 1 == 0;
+            let value = if is_even { rest.sine() } else { rest.cosine() };
+            if rest.quadrant & 2 == 0 {
+                value
+            } else {
+                -value
+            }
+        },
+    )
+}
+
+/// The cosine of an angle in radians, with the bits of the `libm` crate.
+#[inline(always)]
+pub(super) fn cosine(x: f64) -> f64 {
+    if is_small(x) {
+        return small_cosine(x, 0.0);
+    }
+    reduced(x).map_or_else(
+        || libm::cos(x),
+        |rest| {
+            let is_even = rest.quadrant & 1 == 0;
+            let value = if is_even { rest.cosine() } else { rest.sine() };
+            if (rest.quadrant + 1) & 2 == 0 {
+                value
+            } else {
+                -value
+            }
+        },
+    )
+}
+
+/// The sine and the cosine of an angle in radians, with the bits of [`sine`] and [`cosine`].
+#[inline(always)]
+pub(super) fn sine_and_cosine(x: f64) -> (f64, f64) {
+    if is_small(x) {
+        return (small_sine(x), small_cosine(x, 0.0));
+    }
+    reduced(x).map_or_else(
+        || libm::sincos(x),
+        |rest| {
+            let (sin, cos) = (rest.sine(), rest.cosine());
+            (rest.by_quadrant(sin, cos, 0), rest.by_quadrant(cos, sin, 1))
+        },
+    )
 }
 
 /// The sines of four angles in radians, each with the bits of [`super::sin`].
@@ -315,6 +416,17 @@ mod tests {
                     }
                 }
                 for (angle, sine) in x.into_iter().zip(four(simd, x)) {
+                    let (expected, expected_cosine) = (libm::sincos(angle), libm::cos(angle));
+                    let (sin, cos) = sine_and_cosine(angle);
+                    for (value, expected) in [
+                        (cosine(angle), expected_cosine),
+                        (cos, expected_cosine),
+                        (sin, expected.0),
+                    ] {
+                        let is_same = value.to_bits() == expected.to_bits()
+                            || value.is_nan() && expected.is_nan();
+                        assert!(is_same, "{angle}: {value} and not {expected}");
+                    }
                     let expected = libm::sin(angle);
                     for sine in [sine, super::sine(angle)] {
                         let is_same = sine.to_bits() == expected.to_bits()

@@ -5,7 +5,8 @@ mod search;
 mod tests;
 
 use super::container::Container;
-use super::octree::{Content, Octree, Visitor as _};
+use super::octree::{Cell, Content, Octree, Visitor as _};
+use super::slopes::Slopes;
 use super::workspace::with_workspace;
 use crate::{
     Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
@@ -187,6 +188,20 @@ impl Isosurface {
         (self.less_threshold(values), rate)
     }
 
+    /// Bounds of the derivative along a direction in a cell of the octree, if they are known.
+    fn rate_in(
+        &self,
+        workspace: &mut Workspace,
+        cell: &Cell<'_>,
+        direction: DVec3,
+    ) -> Option<Bounds> {
+        let slopes = cell.slopes(|cell| {
+            let cell = cell.padded(self.cell_pad);
+            Slopes::around(DVec3::AXES.map(|axis| self.rate_within(workspace, &cell, axis).1))
+        });
+        slopes?.along(direction)
+    }
+
     /// What a cell of the octree holds.
     fn content(&self, workspace: &mut Workspace, cell: &Aabb) -> Content {
         let cell = cell.padded(self.cell_pad);
@@ -299,6 +314,7 @@ impl Isosurface {
             direction: ray.direction,
             shortest: shortest / speed,
             slope: self.options.max_gradient * ray.direction.length(),
+            rate_in_cell: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! The crossings of one ray with a surface, found in parts that shrink until they are proven empty or short.
 
 use super::{Event, Isosurface, SURFACE};
-use crate::implicit::octree::{Content, Visitor};
+use crate::implicit::octree::{Cell, Content, Visitor};
 use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Workspace};
@@ -22,6 +22,9 @@ pub(super) struct Search<'a> {
     pub(super) shortest: f64,
     /// At least the largest change of the function per unit of `s`, if it has no bounds and the scene's gradient is trusted.
     pub(super) slope: f64,
+    /// Bounds of the derivative along the ray in the cell that is searched, if they are known. Whatever they exclude the search would exclude
+    /// by itself, so it does not matter when they become known.
+    pub(super) rate_in_cell: Option<Bounds>,
 }
 
 /// A parameter of the ray with the value of the function there, less the threshold.
@@ -63,12 +66,19 @@ impl Search<'_> {
         if changes && is_rough(from.s) && is_rough(to.s) {
             return visit(to.s);
         }
+        if let Some(rate) = self.rate_in_cell
+            && !changes
+            && stays_away(from, to, rate)
+        {
+            return ControlFlow::Continue(());
+        }
         let length = to.s - from.s;
         let is_short = length <= self.shortest;
         let has_rates = self.surface.has_rates && !is_short;
         // Most parts without a surface are excluded by bounds of the values alone, which take less time than those of the rate, in which
-        // they are contained.
-        let is_left_out = changes || has_rates && is_near_zero(from, to);
+        // they are contained; but hardly any that the rate in the whole cell does not exclude.
+        let is_left_out =
+            changes || has_rates && (self.rate_in_cell.is_some() || is_near_zero(from, to));
         if !is_left_out && self.excludes(from, to, is_short) {
             return ControlFlow::Continue(());
         }
@@ -231,7 +241,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         }
     }
 
-    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+    fn part(&mut self, enter: f64, exit: f64, cell: &Cell<'_>) -> ControlFlow<()> {
         let enter = if enter > 0.0 { enter } else { 0.0 };
         let exit = if exit < self.length {
             exit
@@ -258,9 +268,17 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
             // There is no crossing between the parts, so this is zero within rounding.
             first.value = least_value(inside);
         }
-        let last = self.search.place(exit);
+        let search = &mut self.search;
+        let last = search.place(exit);
         (self.last, self.value) = (exit, Some(last.value));
-        let start = self.search.start;
+        let start = search.start;
+        let has_rates = search.surface.has_rates && first.is_inside() == last.is_inside();
+        search.rate_in_cell = if has_rates {
+            let surface = search.surface;
+            surface.rate_in(search.workspace, cell, search.direction)
+        } else {
+            None
+        };
         let Self { search, visit, .. } = self;
         let flow = search.run(first, last, &mut |s| {
             inside = !inside;
