@@ -5,10 +5,12 @@ mod questions;
 mod render;
 mod scene;
 pub(crate) mod submit;
+mod tips;
 
 pub(crate) use questions::*;
 pub(crate) use render::*;
 pub(crate) use scene::*;
+pub(crate) use tips::with_tip;
 
 use crate::later::Later;
 use crate::memory::MemoryLimit;

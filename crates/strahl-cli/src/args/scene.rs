@@ -107,7 +107,7 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
     /// Largest depth of the ray tree, where primary rays have depth 1 [default: the scene's depth, or 10]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, alias = "depth", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) max_depth: Option<u32>,
     /// Do not follow rays with a weight below this; 0 follows all [default: the scene's value, or 1/255]
     #[arg(long, value_name = "WEIGHT", value_parser = parse_weight)]

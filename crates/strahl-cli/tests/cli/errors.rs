@@ -21,6 +21,14 @@ fn bad_input_gives_one_clear_error() {
         1,
         &["0 x 10"],
     );
+    for (option, tip) in [
+        ("--width", "--size 640x480"),
+        ("--spp", "--sampling 4x4"),
+        ("--jobs", "--threads 4"),
+        ("--out", "-o picture.png"),
+    ] {
+        fails(f, &["render", "scene.nff", option, "4"], 2, &[option, tip]);
+    }
     fails(
         f,
         &["render", "scene.nff", "-o", "x.png", "--size", "wide"],
