@@ -34,8 +34,8 @@ impl Slopes {
     }
 }
 
-/// So many rays do without the slopes of a cell. Finding them takes as long as what they save a few rays, and most cells of small
-/// pictures are met by few.
+/// The number of rays that search a cell without its slopes. Finding the slopes takes as long as they save a few rays, and in small pictures
+/// few rays meet a cell.
 const ASKED_IN_VAIN: u8 = 4;
 
 /// The slopes in 64 cells, as far as they are known.
@@ -44,7 +44,7 @@ pub(super) struct Notes([Note; 64]);
 
 #[derive(Debug, Default)]
 struct Note {
-    /// How many have asked before the slopes were known. Some may be missing, which only costs time.
+    /// The number of rays that have asked before the slopes were known. Threads that ask at once may count as one, which only costs time.
     asked: AtomicU8,
     slopes: OnceLock<Slopes>,
 }

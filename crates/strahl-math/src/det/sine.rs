@@ -1,4 +1,4 @@
-//! The sine of four numbers at once, with the bits of the `libm` crate.
+//! Sines and cosines of one angle and of four at once, with the bits of the `libm` crate.
 //!
 //! Angles are reduced by the multiple of π/2 that is nearest to them (Cody and Waite 1980): π/2 is the sum of a number of 33 bits, whose
 //! product with the multiple is exact, and a rest. The polynomials and constants are those of FreeBSD's msun, which `libm` is a port of.
@@ -44,7 +44,7 @@ const COS: [f64; 6] = [
     -1.13596475577881948265e-11,
 ];
 
-/// Below this the sine is the angle, or the sign of zero counts.
+/// Below this the angles are left to `libm`: the sine is the angle itself, and of zeros the sign counts.
 const TINY: f64 = 1e-7;
 
 /// An angle less the nearest multiple of π/2: `y + lost`.
@@ -89,7 +89,7 @@ impl Rest {
         small_cosine(self.y, self.lost)
     }
 
-    /// The first in even quadrants, the second in odd ones; with the other sign two quadrants further.
+    /// `even` in even quadrants, `odd` in odd ones; negative in the second half of the four quadrants from `-turned` on.
     #[inline(always)]
     fn by_quadrant(&self, even: f64, odd: f64, turned: i32) -> f64 {
         let value = if self.quadrant & 1 == 0 { even } else { odd };
