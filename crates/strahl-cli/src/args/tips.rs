@@ -39,7 +39,7 @@ pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
         .find(|(names, _)| names.contains(&option.as_str()));
     if let (ErrorKind::UnknownArgument, Some((_, tip))) = (error.kind(), known) {
         let tips = ContextValue::StyledStrs(vec![StyledStr::from(*tip)]);
-        error.insert(ContextKind::SuggestedArg, ContextValue::None);
+        error.remove(ContextKind::SuggestedArg);
         error.insert(ContextKind::Suggested, tips);
     }
     error
