@@ -337,6 +337,8 @@ fn functions_know_x_as_u_and_y_as_v() {
         "E(2, 3, 5, 7)",
     ];
     assert_eq!(values(setup, &list), [11.0, 16.0, 87.0, 80.0, 52.0]);
+    let found = errors("#declare F = function { pow(x, 0.5, 2) }");
+    assert!(found[0].contains("takes 2 arguments, found 3"), "{found:?}");
     let found = errors("#declare F = function(k) { k * t }");
     assert!(
         found[0].contains("`t` is not a parameter of this function"),

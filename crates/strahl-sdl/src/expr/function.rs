@@ -430,10 +430,14 @@ impl Parser<'_> {
             (Word::Select, [a, b, c, d]) => Some(graph.select(*a, *b, *c, *d)),
             _ => None,
         };
-        match value {
-            Some(value) => Ok(value),
-            None => {
-                let count = arguments.len();
+        let count = arguments.len();
+        match (value, word) {
+            (Some(value), _) => Ok(value),
+            (None, Word::Mod | Word::Pow | Word::Atan2 | Word::Div) => {
+                Err(self.wrong_arguments(2, count, place))
+            }
+            (None, Word::Degrees | Word::Radians) => Err(self.wrong_arguments(1, count, place)),
+            (None, _) => {
                 let text = word.text();
                 let message = format!("`{text}` with {count} arguments is not known in functions");
                 Err(self.fail(place, message))
@@ -511,9 +515,8 @@ impl Parser<'_> {
         found: usize,
         place: Place,
     ) -> crate::parser::Failed {
-        self.fail(
-            place,
-            format!("this function takes {expected} arguments, found {found}"),
-        )
+        let plural = if expected == 1 { "" } else { "s" };
+        let message = format!("this function takes {expected} argument{plural}, found {found}");
+        self.fail(place, message)
     }
 }
