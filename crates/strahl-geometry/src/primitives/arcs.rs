@@ -21,11 +21,19 @@ pub(super) struct Arc {
     pub(super) high: f64,
 }
 
+impl Arc {
+    /// The square of half the distance between the points of the axis where the arc, continued, ends: the body of the arc is in the sphere
+    /// about its height with this radius. A ball's is the ball itself.
+    fn tip_squared(&self) -> f64 {
+        (self.radius - self.inset) * (self.radius + self.inset)
+    }
+}
+
 /// The body: arcs that continue each other, from below. Facets: the arcs in their order, then the caps below and above, where the
 /// outline does not end on the axis.
 ///
-/// Along a line, the distance from the centre of an arc (in the half plane of the outline) is a convex function: both of its
-/// crossings with the radius are found by Newton's method, which cannot go astray from outside.
+/// A line crosses balls (arcs with their centres on the axis) where a quadratic equation says. For the others a convex function of the
+/// place on the line is negative inside: both of its zeros are found by Newton's method, which cannot go astray from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ArcBody {
     pub(super) base: DVec3,
@@ -41,138 +49,210 @@ pub(super) struct ArcBody {
 /// Newton's method doubles the digits in each round, but near a tangent it gains one only.
 const ROUNDS: u32 = 100;
 
-/// A part of a line near an arc: the point at `s` is `start + s along`, relative to the centre of the arc on the axis.
-struct Chord {
+/// A line in terms of the axis. The point at `s` is `start + s along`, relative to the base; its height is `height + s climb`, and the square of its
+/// distance from the axis is `miss_squared + spread (s - nearest)²`.
+#[derive(Clone, Copy)]
+struct Course {
+    /// The parameter of the ray at `s = 0`.
+    t: f64,
     start: DVec3,
     along: DVec3,
-    t: f64,
-    half: f64,
+    /// 1 over the square of the length of `along`.
+    inverse_square: f64,
+    height: f64,
+    climb: f64,
+    nearest: f64,
+    miss_squared: f64,
+    spread: f64,
 }
 
-impl ArcBody {
-    /// The distance of a point, relative to the centre of an arc on the axis, from the arc's centre in its half plane; with its
-    /// derivative along a direction.
-    fn distance(&self, arc: &Arc, p: DVec3, d: DVec3) -> (f64, f64) {
-        let (height, climb) = (p.dot(self.axis), d.dot(self.axis));
-        let across = p - self.axis * height;
-        let off = across.length();
-        let outward = if off > 0.0 { across.dot(d) / off } else { 0.0 };
-        let reach = off + arc.inset;
-        let distance = (reach * reach + height * height).sqrt();
-        (distance, (reach * outward + height * climb) / distance)
+impl Course {
+    /// `None` for a direction that is zero or not finite.
+    fn new(body: &ArcBody, ray: &Ray) -> Option<Self> {
+        let along = ray.direction;
+        let f = ray.origin - body.base;
+        let inverse_square = 1.0 / along.dot(along);
+        // The point next to the base, so that errors are of the size of the body and not of the distance.
+        let t = -f.dot(along) * inverse_square;
+        if !(t.is_finite() && inverse_square > 0.0) {
+            return None;
+        }
+        let start = f + along * t;
+        let (height, climb) = (start.dot(body.axis), along.dot(body.axis));
+        let across = start - body.axis * height;
+        let off = along - body.axis * climb;
+        let spread = off.dot(off);
+        let nearest = if spread > 0.0 {
+            -across.dot(off) / spread
+        } else {
+            0.0
+        };
+        let miss = across + off * nearest;
+        Some(Self {
+            t,
+            start,
+            along,
+            inverse_square,
+            height,
+            climb,
+            nearest,
+            miss_squared: miss.dot(miss),
+            spread,
+        })
     }
 
-    /// The first point of a part of a chord that is not outside of an arc. `side` is 1 from the beginning of the part, -1 from its end.
-    fn first(&self, arc: &Arc, chord: &Chord, part: [f64; 2], side: f64) -> Option<f64> {
-        let [begin, end] = part;
-        let (mut s, end) = if side > 0.0 {
-            (begin, end)
-        } else {
-            (-end, -begin)
-        };
-        let d = chord.along * side;
+    /// The same line from its other end.
+    fn reversed(&self) -> Self {
+        Self {
+            along: -self.along,
+            climb: -self.climb,
+            nearest: -self.nearest,
+            ..*self
+        }
+    }
+
+    /// The first place in a part of the line that is not outside of an arc.
+    fn first(&self, arc: &Arc, [begin, end]: [f64; 2]) -> Option<f64> {
+        let widest = arc.radius - arc.inset;
+        if self.miss_squared > widest * widest {
+            return None;
+        }
+        let tip_squared = arc.tip_squared();
+        let rise = self.height - arc.height;
+        let mut s = begin;
         for _ in 0..ROUNDS {
-            let (distance, slope) = self.distance(arc, chord.start + d * s, d);
-            let over = distance - arc.radius;
+            let height = rise + self.climb * s;
+            let v = self.spread * (s - self.nearest);
+            let off_squared = self.miss_squared + v * (s - self.nearest);
+            let off = off_squared.sqrt();
+            // The square of the distance from the centre of the arc, in its half plane, less that of the radius.
+            let over = height * height + off_squared + 2.0 * arc.inset * off - tip_squared;
             if over <= 0.0 {
-                return Some(s * side);
+                return Some(s);
             }
-            let next = s - over / slope;
+            // Half of its derivative; times `off`, to save a division.
+            let (over, slope) = if off > 0.0 {
+                (
+                    over * off,
+                    height * self.climb * off + v * (off + arc.inset),
+                )
+            } else {
+                (over, height * self.climb)
+            };
+            let next = s - 0.5 * over / slope;
             if !(slope < 0.0) || next > end {
                 return None;
             }
             if next <= s {
-                return Some(s * side);
+                break;
             }
             s = next;
         }
-        Some(s * side)
+        Some(s)
     }
 
-    fn chord(&self, arc: &Arc, ray: &Ray) -> Option<Chord> {
-        let d = ray.direction;
-        let f = (ray.origin - self.base) - self.axis * arc.height;
-        let t = -f.dot(d) / d.dot(d);
-        let start = f + d * t;
-        // The sphere around the body of the arc, a little larger.
-        let square = (arc.radius - arc.inset) * (arc.radius + arc.inset) * (1.0 + 1e-9);
-        let half = ((square - start.dot(start)) / d.dot(d)).sqrt();
-        // Also refuses NaN, infinite and zero directions.
-        (half > 0.0 && half.is_finite()).then_some(Chord {
-            start,
-            along: d,
-            t,
-            half,
+    /// The part of the line in the sphere around the body of an arc.
+    fn sphere(&self, arc: &Arc, axis: DVec3) -> Option<[f64; 2]> {
+        let f = self.start - axis * arc.height;
+        let middle = -f.dot(self.along) * self.inverse_square;
+        let nearest = f + self.along * middle;
+        // A little larger where Newton's method begins at it.
+        let larger = if arc.inset == 0.0 { 1.0 } else { 1.0 + 1e-9 };
+        let square = (arc.tip_squared() * larger - nearest.dot(nearest)) * self.inverse_square;
+        // Also refuses NaN.
+        if !(square > 0.0) {
+            return None;
+        }
+        let half = square.sqrt();
+        Some([middle - half, middle + half])
+    }
+}
+
+impl ArcBody {
+    /// The distance of a point, relative to the centre of an arc on the axis, from the arc's centre in its half plane.
+    fn distance(&self, arc: &Arc, p: DVec3) -> f64 {
+        let height = p.dot(self.axis);
+        let reach = (p - self.axis * height).length() + arc.inset;
+        (reach * reach + height * height).sqrt()
+    }
+
+    /// The first place of a line that is inside, and the facet there.
+    fn enter(&self, course: &Course) -> Option<End> {
+        let last = self.arcs.len() - 1;
+        let climbs = course.climb >= 0.0;
+        // The line passes the arcs in this order.
+        for place in 0..=last {
+            let index = if climbs { place } else { last - place };
+            let arc = &self.arcs[index];
+            let (low, high) = (arc.low - course.height, arc.high - course.height);
+            let [begin, end] = if course.climb == 0.0 {
+                if !(low <= 0.0 && 0.0 <= high) {
+                    continue;
+                }
+                [f64::NEG_INFINITY, f64::INFINITY]
+            } else if climbs {
+                [low / course.climb, high / course.climb]
+            } else {
+                [high / course.climb, low / course.climb]
+            };
+            let Some([near, far]) = course.sphere(arc, self.axis) else {
+                continue;
+            };
+            let from = if begin > near { begin } else { near };
+            let to = if end < far { end } else { far };
+            if !(from <= to) {
+                continue;
+            }
+            let s = if arc.inset == 0.0 {
+                from
+            } else {
+                match course.first(arc, [from, to]) {
+                    Some(s) => s,
+                    None => continue,
+                }
+            };
+            // Where one arc goes over into the next one is no cap.
+            let is_cap = place == 0 && s == begin;
+            let facet = match (is_cap, climbs) {
+                (false, _) => index,
+                (true, true) => last + 1,
+                (true, false) => last + 2,
+            };
+            return Some(End {
+                t: s,
+                facet: facet as u32,
+            });
+        }
+        None
+    }
+
+    /// The end of a line at which it enters the body, in parameters of the ray.
+    fn near(&self, course: &Course) -> Option<End> {
+        let end = self.enter(course)?;
+        Some(End {
+            t: course.t + end.t,
+            ..end
         })
     }
 
-    /// The span of a chord that is inside of an arc and between its heights. Newton's method begins at these heights: where the line is inside already,
-    /// it ends there.
-    fn part(&self, arc: &Arc, chord: &Chord, facet: u32, caps: u32) -> Option<Span> {
-        let height = chord.start.dot(self.axis) + arc.height;
-        let climb = chord.along.dot(self.axis);
-        let slab = if climb == 0.0 {
-            if !(arc.low <= height && height <= arc.high) {
-                return None;
-            }
-            [(f64::NEG_INFINITY, facet), (f64::INFINITY, facet)]
-        } else {
-            let low = ((arc.low - height) / climb, caps);
-            let high = ((arc.high - height) / climb, caps + 1);
-            if climb > 0.0 {
-                [low, high]
-            } else {
-                [high, low]
-            }
-        };
-        let [(enter, enter_facet), (exit, exit_facet)] = slab;
-        let begin = if enter > -chord.half {
-            enter
-        } else {
-            -chord.half
-        };
-        let end = if exit < chord.half { exit } else { chord.half };
-        if !(begin <= end) {
-            return None;
-        }
-        let near = self.first(arc, chord, [begin, end], 1.0)?;
-        let far = self.first(arc, chord, [begin, end], -1.0)?;
-        let at = |s: f64, slab: f64, slab_facet: u32| End {
-            t: chord.t + s,
-            facet: if s == slab { slab_facet } else { facet },
-        };
-        Span::LINE.cut(at(near, enter, enter_facet), at(far, exit, exit_facet))
+    /// The end at which it leaves.
+    fn far(&self, course: &Course) -> Option<End> {
+        let end = self.enter(&course.reversed())?;
+        Some(End {
+            t: course.t - end.t,
+            ..end
+        })
     }
 
-    /// The span in which a line is inside.
-    fn line(&self, ray: &Ray) -> Option<Span> {
-        let mut whole: Option<Span> = None;
-        let caps = self.arcs.len() as u32;
-        for (facet, arc) in self.arcs.iter().enumerate() {
-            let facet = facet as u32;
-            let Some(chord) = self.chord(arc, ray) else {
-                continue;
-            };
-            let Some(part) = self.part(arc, &chord, facet, caps) else {
-                continue;
-            };
-            whole = Some(match whole {
-                None => part,
-                Some(so_far) => Span {
-                    enter: if part.enter.t < so_far.enter.t {
-                        part.enter
-                    } else {
-                        so_far.enter
-                    },
-                    exit: if part.exit.t > so_far.exit.t {
-                        part.exit
-                    } else {
-                        so_far.exit
-                    },
-                },
-            });
+    /// The end at which a line leaves that enters at `near`. Where it only touches, rounding may hide that it leaves: right behind.
+    fn far_behind(&self, course: &Course, near: End) -> End {
+        match self.far(course) {
+            Some(far) if far.t > near.t => far,
+            _ => End {
+                t: near.t.next_up(),
+                ..near
+            },
         }
-        whole
     }
 
     /// Whether a facet is a cap below (-1), above (1), or an arc.
@@ -188,12 +268,30 @@ impl ArcBody {
         if let Some(sign) = self.cap(facet) {
             return self.axis * sign;
         }
-        let arc = self.arc(facet);
-        let height = p.dot(self.axis) - arc.height;
-        let across = p - self.axis * p.dot(self.axis);
-        let outward = across.normalize_or_zero();
-        let normal = outward * (across.length() + arc.inset) + self.axis * height;
-        normal.normalize_or(self.axis)
+        self.nearest(&self.arc(facet), p).1
+    }
+
+    /// The point of an arc's surface next to a point, relative to the base, and the normal there.
+    fn nearest(&self, arc: &Arc, p: DVec3) -> (DVec3, DVec3) {
+        let height = p.dot(self.axis);
+        let across = p - self.axis * height;
+        let off = across.length();
+        let rise = height - arc.height;
+        if !(off > 0.0) {
+            let normal = self.axis * if rise < 0.0 { -1.0 } else { 1.0 };
+            let tip = arc.tip_squared().max(0.0).sqrt();
+            return (self.axis * arc.height + normal * tip, normal);
+        }
+        let outward = across / off;
+        let reach = off + arc.inset;
+        let inverse = 1.0 / (reach * reach + rise * rise).sqrt();
+        let (reach, rise) = (reach * inverse, rise * inverse);
+        let off = reach * arc.radius - arc.inset;
+        let off = if off > 0.0 { off } else { 0.0 };
+        (
+            outward * off + self.axis * (arc.height + rise * arc.radius),
+            outward * reach + self.axis * rise,
+        )
     }
 
     fn arc(&self, facet: u32) -> Arc {
@@ -207,31 +305,34 @@ impl ArcBody {
         self.arcs.get(facet as usize).copied().unwrap_or(NONE)
     }
 
-    /// The span in which a line is inside of the body. For a ray that starts on a facet, the end there is exactly at 0.
-    fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
-        let span = self.line(ray)?;
-        let Some(from) = from else { return Some(span) };
-        let start = End {
-            t: 0.0,
-            facet: from.facet,
-        };
+    /// Whether a ray that starts on a facet enters the body there; `None` if it only touches it.
+    fn enters(&self, ray: &Ray, from: SurfaceId) -> Option<bool> {
         let normal = self.normal(from.facet, ray.origin - self.base);
         let slope = normal.dot(ray.direction);
-        if slope.abs() <= gamma(8) * ray.direction.length() {
-            return None;
-        }
-        let span = if slope < 0.0 {
-            Span {
-                enter: start,
-                ..span
+        (slope.abs() > gamma(8) * ray.direction.length()).then_some(slope < 0.0)
+    }
+
+    /// The span in which a line is inside of the body. For a ray that starts on a facet, the end there is exactly at 0.
+    fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+        let course = Course::new(self, ray)?;
+        let (enter, exit) = match from {
+            None => {
+                let near = self.near(&course)?;
+                (near, self.far_behind(&course, near))
             }
-        } else {
-            Span {
-                exit: start,
-                ..span
+            Some(from) => {
+                let start = End {
+                    t: 0.0,
+                    facet: from.facet,
+                };
+                if self.enters(ray, from)? {
+                    (start, self.far(&course)?)
+                } else {
+                    (self.near(&course)?, start)
+                }
             }
         };
-        (span.enter.t < span.exit.t).then_some(span)
+        Span::LINE.cut(enter, exit)
     }
 
     /// Whether an end of a span is seen.
@@ -239,15 +340,33 @@ impl ArcBody {
         self.is_capped || self.cap(end.facet).is_none()
     }
 
-    /// The first end in the range that is seen.
+    /// The first end in the range that is seen. An end that is not needed is not computed.
     fn closest(&self, ray: &Ray, range: Interval, from: Option<SurfaceId>) -> Option<PrimHit> {
-        let span = self.span(ray, from)?;
+        let enters = match from {
+            None => None,
+            Some(from) => Some(self.enters(ray, from)?),
+        };
+        // A ray that leaves a convex body has it behind itself.
+        if enters == Some(false) && range.min >= 0.0 {
+            return None;
+        }
         let hit = |end: End| {
-            let starts = from.is_some_and(|from| end.t == 0.0 && from.facet == end.facet);
-            let counts = range.accepts(end.t) && self.is_seen(end) && !starts;
+            let counts = range.accepts(end.t) && self.is_seen(end);
             counts.then(|| PrimHit::simple(end.t, end.facet))
         };
-        hit(span.enter).or_else(|| hit(span.exit))
+        let course = Course::new(self, ray)?;
+        if enters == Some(true) {
+            let far = self.far(&course)?;
+            return if far.t > 0.0 { hit(far) } else { None };
+        }
+        let near = self.near(&course)?;
+        if enters == Some(false) {
+            return if near.t < 0.0 { hit(near) } else { None };
+        }
+        hit(near).or_else(|| match near.t <= range.max {
+            true => hit(self.far_behind(&course, near)),
+            false => None,
+        })
     }
 
     /// See [`Solid::crossings`].
@@ -271,7 +390,7 @@ impl ArcBody {
 
     /// The heights of both ends.
     fn ends(&self) -> [f64; 2] {
-        let tip = |arc: &Arc| ((arc.radius - arc.inset) * (arc.radius + arc.inset)).sqrt();
+        let tip = |arc: &Arc| arc.tip_squared().sqrt();
         let low = self.arcs.first().map_or(0.0, |arc| {
             let end = arc.height - tip(arc);
             if arc.low > end { arc.low } else { end }
@@ -286,23 +405,16 @@ impl ArcBody {
     /// The place of a hit relative to the base, on the surface, and the surface there without texture coordinates.
     fn bare_surface(&self, ray: &Ray, hit: &PrimHit) -> (DVec3, SurfacePoint) {
         let p = (ray.origin - self.base) + ray.direction * hit.t;
-        let height = p.dot(self.axis);
-        let across = p - self.axis * height;
-        let [low, high] = self.ends();
-        let local = match self.cap(hit.surface.facet) {
-            Some(sign) => across + self.axis * if sign < 0.0 { low } else { high },
-            None => {
-                let arc = self.arc(hit.surface.facet);
-                let off = across.length();
-                let (reach, rise) = (off + arc.inset, height - arc.height);
-                let scale = arc.radius / (reach * reach + rise * rise).sqrt();
-                let off = reach * scale - arc.inset;
-                let off = if off > 0.0 { off } else { 0.0 };
-                across.normalize_or_zero() * off + self.axis * (arc.height + rise * scale)
+        let (local, normal) = match self.cap(hit.surface.facet) {
+            Some(sign) => {
+                let [low, high] = self.ends();
+                let across = p - self.axis * p.dot(self.axis);
+                let height = if sign < 0.0 { low } else { high };
+                (across + self.axis * height, self.axis * sign)
             }
+            None => self.nearest(&self.arc(hit.surface.facet), p),
         };
         let position = self.base + local;
-        let normal = self.normal(hit.surface.facet, p);
         let error = point_error(position, self.extent(), 32);
         (local, SurfacePoint::bare(position, error, normal))
     }
@@ -367,9 +479,7 @@ impl ArcBody {
         let height = p.dot(self.axis);
         self.arcs.iter().any(|arc| {
             let local = p - self.axis * arc.height;
-            arc.low <= height
-                && height <= arc.high
-                && self.distance(arc, local, DVec3::ZERO).0 <= arc.radius
+            arc.low <= height && height <= arc.high && self.distance(arc, local) <= arc.radius
         })
     }
 }
