@@ -1,5 +1,5 @@
 use super::outline::{Cut, Outline, direction, slab};
-use super::spans::{WholeLine, first_of_walk, snap};
+use super::spans::{WholeLine, first_of_walk, near_the_start};
 use crate::primitives::{point_error, start_of};
 use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
 use std::cmp::Ordering;
@@ -71,8 +71,11 @@ impl Extrusion<'_> {
         }
     }
 
-    /// Lists the crossings of the ray's line with the infinite walls. `true` if the line's image is a point inside the outline.
-    fn walls(&self, ray: &Ray, list: &mut Crossings) -> bool {
+    /// Visits the crossings of the ray's line with the infinite walls. `true` if the line's image is a point inside the outline.
+    ///
+    /// `uv[1]` of a hit says whether the curve passes to the left of the ray (1) or to the right (-1).
+    #[inline(always)]
+    fn walls(&self, ray: &Ray, mut visit: impl FnMut(PrimHit)) -> bool {
         let Ray {
             origin: o,
             direction: d,
@@ -105,18 +108,28 @@ impl Extrusion<'_> {
                 let aside = crossing.point.extend(1.0);
                 quotient(-aside.cross(o), aside.cross(d))
             } else {
-                let way = (crossing.point - o.truncate()).extend(0.0);
-                quotient(way, d.truncate().extend(0.0))
+                let way = crossing.point - o.truncate();
+                if d.x.abs() >= d.y.abs() {
+                    way.x / d.x
+                } else {
+                    way.y / d.y
+                }
             };
             let surface = SurfaceId {
                 element: 0,
                 facet: FIRST_WALL.saturating_add(crossing.piece),
             };
             let uv = [crossing.s, if crossing.rising { 1.0 } else { -1.0 }];
-            let hit = PrimHit { t, surface, uv };
-            list.list.push(Crossing::new(hit, 0.0, Side::Inner));
+            visit(PrimHit { t, surface, uv });
         });
         false
+    }
+
+    /// Lists the same crossings.
+    fn list_walls(&self, ray: &Ray, list: &mut Crossings) -> bool {
+        self.walls(ray, |hit| {
+            list.list.push(Crossing::new(hit, 0.0, Side::Inner));
+        })
     }
 
     /// Root identity: moves the crossing that the ray starts on to exactly 0.
@@ -125,12 +138,29 @@ impl Extrusion<'_> {
             return;
         };
         let run = self.outline.smooth_run(start);
-        let near = |hit: &PrimHit| {
-            let wall = hit.surface.facet.saturating_sub(FIRST_WALL);
-            (self.outline.smooth_run(wall) == run).then(|| self.wall_normal(hit))
-        };
+        let mut nearest: Option<&mut Crossing> = None;
+        for wall in walls {
+            if self.is_start(ray, &wall.hit, run, nearest.as_ref().map(|best| &best.hit)) {
+                nearest = Some(wall);
+            }
+        }
+        if let Some(wall) = nearest {
+            wall.hit.t = 0.0;
+        }
+    }
+
+    /// Whether a crossing may be the start of a ray that lies on a smooth run of walls, and is nearer to it than the best one so far; see
+    /// [`snap`](super::spans::snap).
+    #[inline]
+    fn is_start(&self, ray: &Ray, hit: &PrimHit, run: u32, best: Option<&PrimHit>) -> bool {
+        let wall = hit.surface.facet.saturating_sub(FIRST_WALL);
+        if best.is_some_and(|best| best.t.abs() <= hit.t.abs())
+            || self.outline.smooth_run(wall) != run
+        {
+            return false;
+        }
         let size = self.bounds().size().max_element();
-        snap(walls, ray, size, near);
+        near_the_start(ray, hit, size, self.wall_normal(hit))
     }
 
     /// The unit normal of a wall at a hit, on the outer side.
@@ -190,55 +220,6 @@ impl Extrusion<'_> {
         crossing.side = if enters { Side::Enter } else { Side::Exit };
     }
 
-    /// The first visible hit behind the start and in the range, from all crossings with walls and caps in any order.
-    fn first_behind(
-        &self,
-        ray: &Ray,
-        start: f64,
-        range: Interval,
-        mut within: bool,
-        crossings: &mut Vec<Crossing>,
-    ) -> Option<PrimHit> {
-        let mut between = false;
-        crossings.retain(|crossing| {
-            let is_behind = crossing.hit.t.total_cmp(&start).is_gt();
-            if !is_behind {
-                match crossing.side {
-                    Side::Enter => between = true,
-                    Side::Exit => between = false,
-                    Side::Inner => within = !within,
-                }
-            }
-            is_behind
-        });
-        let many = crossings.len() > MANY;
-        if many {
-            crossings.sort_unstable_by(|a, b| order(b, a));
-        }
-        loop {
-            let mut crossing = if many {
-                crossings.pop()?
-            } else {
-                let all = crossings.iter().enumerate();
-                let (index, _) = all.min_by(|(_, a), (_, b)| order(a, b))?;
-                crossings.swap_remove(index)
-            };
-            let inside = within && between;
-            match crossing.side {
-                Side::Enter => between = true,
-                Side::Exit => between = false,
-                Side::Inner => within = !within,
-            }
-            let enters = within && between;
-            if enters != inside && crossing.hit.t.is_finite() {
-                self.finish(ray, &mut crossing, enters);
-                if crossing.visible {
-                    return range.accepts(crossing.hit.t).then_some(crossing.hit);
-                }
-            }
-        }
-    }
-
     pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let at = ray.at(hit.t);
         let reach = self.outline.reach().max_element();
@@ -278,7 +259,7 @@ impl WholeLine for Extrusion<'_> {
         let Some(caps) = self.caps(ray, from) else {
             return;
         };
-        let always = self.walls(ray, list);
+        let always = self.list_walls(ray, list);
         if list.list.is_empty() && !always {
             return;
         }
@@ -304,7 +285,8 @@ impl WholeLine for Extrusion<'_> {
         });
     }
 
-    /// In contrast to a walk, what lies behind the first hit is not sorted, and what lies before the range is only counted.
+    /// In contrast to a walk, crossings are neither kept nor sorted: those up to the place where the ray is between the caps are counted, and of
+    /// the others the first one is enough.
     fn first_hit(
         &self,
         ray: &Ray,
@@ -312,27 +294,50 @@ impl WholeLine for Extrusion<'_> {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let caps = self.caps(ray, from)?;
-        let [low, high] = caps.map(|cap| cap.hit.t);
+        let [low, high] = self.caps(ray, from)?;
         let start = start_of(range, from);
-        if !(low <= high) {
+        if !(low.hit.t <= high.hit.t) {
             return first_of_walk(self, ray, range, from, scratch);
         }
-        if high <= start || low > range.max {
+        if high.hit.t <= start || low.hit.t > range.max {
             return None;
         }
-        let mut list = scratch.take();
-        let always = self.walls(ray, &mut list);
-        let hit = if list.list.is_empty() && !always {
-            None
-        } else {
-            self.snap_walls(ray, from, &mut list.list);
-            let within = always || self.starts_within(ray, &list.list);
-            list.list.extend(caps);
-            self.first_behind(ray, start, range, within, &mut list.list)
+        // Between the caps from here on.
+        let comes_in = low.hit.t.total_cmp(&start).is_gt();
+        let begin = if comes_in { low.hit.t } else { start };
+        let apex = self.apex(ray);
+        let own = from.and_then(|from| from.facet.checked_sub(FIRST_WALL));
+        let own = own.map(|piece| self.outline.smooth_run(piece));
+        let mut walls = Walls::default();
+        let always = self.walls(ray, |hit| {
+            walls.within ^= hit.t < apex;
+            walls.take(hit, begin);
+            if own.is_some_and(|run| self.is_start(ray, &hit, run, walls.start.as_ref())) {
+                walls.start = Some(hit);
+            }
+        });
+        if !(always || walls.any) {
+            return None;
+        }
+        if let Some(hit) = walls.start {
+            walls.within ^= (hit.t < apex) != (0.0 < apex);
+            walls.moved_to_start(hit, begin);
+        }
+        let within = always || (walls.within != walls.passed);
+        let found = |mut crossing: Crossing, enters: bool| {
+            self.finish(ray, &mut crossing, enters);
+            range.accepts(crossing.hit.t).then_some(crossing.hit)
         };
-        scratch.give(list);
-        hit
+        if within && comes_in && self.capped && low.hit.t.is_finite() {
+            return found(low, true);
+        }
+        match walls.next() {
+            Some(hit) if hit.t.total_cmp(&high.hit.t).is_lt() => {
+                found(Crossing::new(hit, 0.0, Side::Inner), !within)
+            }
+            _ if within && self.capped && high.hit.t.is_finite() => found(high, false),
+            _ => None,
+        }
     }
 
     fn normal(&self, _: &Ray, hit: &PrimHit) -> DVec3 {
@@ -348,8 +353,64 @@ impl WholeLine for Extrusion<'_> {
     }
 }
 
-/// So many crossings are sorted, instead of looking for the first one again and again.
-const MANY: usize = 16;
+/// The crossings of a line with walls, as far as the first hit needs them.
+#[derive(Default)]
+struct Walls {
+    any: bool,
+    /// Whether an odd number lies before the apex.
+    within: bool,
+    /// Whether an odd number lies up to the place where the search begins.
+    passed: bool,
+    /// The first two behind it.
+    next: [Option<PrimHit>; 2],
+    /// The one that the ray starts on.
+    start: Option<PrimHit>,
+}
+
+impl Walls {
+    #[inline]
+    fn take(&mut self, hit: PrimHit, begin: f64) {
+        self.any = true;
+        if hit.t.total_cmp(&begin).is_le() {
+            self.passed = !self.passed;
+            return;
+        }
+        let is_before = |other: &Option<PrimHit>| {
+            other
+                .as_ref()
+                .is_none_or(|other| by_place(&hit, other).is_lt())
+        };
+        let [first, second] = &mut self.next;
+        if is_before(first) {
+            *second = first.replace(hit);
+        } else if is_before(second) {
+            *second = Some(hit);
+        }
+    }
+
+    /// A crossing that was taken turns out to be the start, which is never behind the beginning.
+    fn moved_to_start(&mut self, hit: PrimHit, begin: f64) {
+        if hit.t.total_cmp(&begin).is_le() {
+            return;
+        }
+        self.passed = !self.passed;
+        let [first, second] = self.next;
+        self.next = match first == Some(hit) {
+            true => [second, None],
+            false => [first, None],
+        };
+    }
+
+    fn next(&self) -> Option<PrimHit> {
+        self.next[0]
+    }
+}
+
+/// The order of hits along a ray; of walls that meet at an edge, by their numbers.
+fn by_place(a: &PrimHit, b: &PrimHit) -> Ordering {
+    let by_t = a.t.total_cmp(&b.t);
+    by_t.then_with(|| a.surface.facet.cmp(&b.surface.facet))
+}
 
 /// The order of crossings along a ray. Where a ray meets an edge it leaves before it enters, so there is no span without length.
 fn order(a: &Crossing, b: &Crossing) -> Ordering {

@@ -6,6 +6,9 @@ use strahl_math::DVec2;
 use strahl_math::error::gamma;
 use strahl_math::roots::find_root;
 
+/// Most pieces in a leaf of the boxes around them: testing a piece costs little more than testing a box.
+const LEAF: usize = 3;
+
 /// A piece of a curve in the half-plane of radius and height, on which both are monotone.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Arc {
@@ -265,7 +268,7 @@ impl MeridianBuilder {
             .map(|arc| [arc.tangent(0.0), arc.tangent(1.0)])
             .collect();
         let boxes: Vec<_> = self.arcs.iter().map(Arc::bounds).collect();
-        let runs = Runs::build(&boxes);
+        let runs = Runs::build(&boxes, LEAF);
         let Rect { min, max } = runs.bounds();
         let middle = 0.5 * (min.y + max.y);
         let terms = self.arcs.iter().map(|arc| arc.terms(middle));

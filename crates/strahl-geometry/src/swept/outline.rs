@@ -1,10 +1,12 @@
 use super::curve::Piece;
 use super::runs::{Rect, Runs};
 use crate::GeometryError;
-use std::ops::ControlFlow;
+use crate::blocks::LANES;
+use std::ops::{ControlFlow, Range};
 use strahl_math::error::gamma;
 use strahl_math::roots::{Bernstein, RootCount, newton};
 use strahl_math::{DVec2, Interval};
+use strahl_simd::{Isa, Simd, dispatch};
 
 /// Closed curves in a plane, made of lines, parabolas and cubics, from which prisms and letters are swept.
 ///
@@ -14,6 +16,7 @@ use strahl_math::{DVec2, Interval};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     pieces: Box<[Piece<DVec2>]>,
+    points: ControlPoints,
     /// For each piece, the first piece of the smooth run that it belongs to.
     smooth: Box<[u32]>,
     runs: Runs,
@@ -117,7 +120,8 @@ impl OutlineBuilder {
         let ends: Vec<[End; 2]> = ends.collect();
         Ok(Outline {
             smooth: smooth_runs(&ends, &self.starts),
-            runs: Runs::build(&boxes),
+            runs: Runs::build(&boxes, LEAF),
+            points: ControlPoints::of(&self.pieces),
             pieces: self.pieces.into_boxed_slice(),
             reach,
             gaps: self.gaps,
@@ -139,6 +143,100 @@ pub(super) struct OutlineCrossing {
     pub(super) point: DVec2,
     /// Whether the curve passes to the side of the line's normal.
     pub(super) rising: bool,
+}
+
+impl Cut {
+    /// The distance of a point from the line, times the length of the normal, with a sign.
+    #[inline(always)]
+    fn side(&self, p: DVec2) -> f64 {
+        let aside = p - self.anchor;
+        self.normal.x * aside.x + self.normal.y * aside.y + self.offset
+    }
+}
+
+/// So many pieces are in a leaf of the boxes around them: their control points are looked at four at a time.
+const LEAF: usize = 12;
+
+/// A leaf has no more control points.
+const POINTS: usize = 4 * LEAF;
+
+/// The control points of pieces, coordinate by coordinate. Neighbours share the point in which they meet.
+#[derive(Clone, Debug, PartialEq)]
+struct ControlPoints {
+    x: Box<[f64]>,
+    y: Box<[f64]>,
+    /// For each point the piece that goes on from there; a number that is none's for the last point of a contour.
+    behind: Box<[u32]>,
+    /// For each piece the places of its first and last point.
+    places: Box<[[u32; 2]]>,
+}
+
+impl ControlPoints {
+    fn of(pieces: &[Piece<DVec2>]) -> Self {
+        let (mut points, mut behind, mut places) = (Vec::<DVec2>::new(), vec![], vec![]);
+        for (piece, number) in pieces.iter().zip(0..) {
+            let new = match points.last() == piece.points().first() {
+                true => &piece.points()[1..],
+                false => piece.points(),
+            };
+            points.extend(new);
+            let last = points.len() - 1;
+            behind.resize(last, u32::MAX);
+            let first = last + 1 - piece.points().len();
+            behind[first..].fill(number);
+            places.push([first, last].map(|place| place as u32));
+        }
+        // Groups of four may reach beyond the last one.
+        points.extend([DVec2::ZERO; 3]);
+        behind.resize(points.len(), u32::MAX);
+        Self {
+            x: points.iter().map(|p| p.x).collect(),
+            y: points.iter().map(|p| p.y).collect(),
+            behind: behind.into(),
+            places: places.into(),
+        }
+    }
+
+    /// Stores on which sides of a line the points of these pieces are, at most [`LEAF`]. Returns the place of the first of them, and, as bits from
+    /// there on, those whose neighbour behind is on the other side.
+    #[inline]
+    fn changes(
+        &self,
+        cut: &Cut,
+        pieces: Range<usize>,
+        sides: &mut [f64; POINTS],
+    ) -> Option<(usize, u64)> {
+        let [start, _] = *self.places.get(pieces.start)?;
+        let [_, last] = *self.places.get(pieces.end.checked_sub(1)?)?;
+        let (start, last) = (start as usize, last as usize);
+        let end = start + (last + 1 - start).next_multiple_of(LANES);
+        let (x, y) = (self.x.get(start..end)?, self.y.get(start..end)?);
+        let above = dispatch!(Simd::best(), isa => find_sides(isa, cut, x, y, sides));
+        let pairs = (1 << (last - start)) - 1;
+        Some((start, (above ^ above >> 1) & pairs))
+    }
+}
+
+/// Stores on which sides of a line points are, at most [`POINTS`]; those at or above 0 as bits.
+#[inline(always)]
+fn find_sides<I: Isa>(isa: I, cut: &Cut, x: &[f64], y: &[f64], sides: &mut [f64; POINTS]) -> u64 {
+    let [nx, ny] = cut.normal.to_array().map(|n| isa.splat(n));
+    let [ax, ay] = cut.anchor.to_array().map(|a| isa.splat(a));
+    let (offset, zero) = (isa.splat(cut.offset), isa.splat(0.0));
+    let mut above = 0;
+    let fours = x
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .zip(y.as_chunks::<LANES>().0);
+    for (group, ((x, y), out)) in fours.zip(sides.as_chunks_mut::<LANES>().0).enumerate() {
+        let (x, y) = (isa.sub(isa.load(x), ax), isa.sub(isa.load(y), ay));
+        // In the order of [`Cut::side`].
+        let side = isa.add(isa.add(isa.mul(nx, x), isa.mul(ny, y)), offset);
+        *out = isa.store(side);
+        above |= u64::from(isa.le(zero, side)) << (group * LANES);
+    }
+    above
 }
 
 impl Outline {
@@ -174,46 +272,46 @@ impl Outline {
 
     /// Visits all crossings with a line, piece by piece.
     ///
-    /// The side of a joint is decided once, for both pieces that meet there; so a line crosses a contour an even number of
+    /// The side of a joint is decided by the same operations for both pieces that meet there; so a line crosses a contour an even number of
     /// times despite rounding.
+    #[inline(always)]
     pub(super) fn crossings(&self, cut: &Cut, mut visit: impl FnMut(&OutlineCrossing)) {
-        let side = |p: DVec2| {
-            let aside = p - cut.anchor;
-            cut.normal.x * aside.x + cut.normal.y * aside.y + cut.offset
-        };
         // Differences, products, sums, and the roundings of normal and offset.
         let far = self.reach + cut.anchor.abs();
         let error = gamma(16) * (cut.normal.abs().dot(far) + cut.offset.abs());
         let width = cut.normal.abs() * 0.5;
         let near = |rect: &Rect| {
             let middle = (rect.min + rect.max) * 0.5;
-            side(middle).abs() <= width.dot(rect.max - rect.min) + error
+            cut.side(middle).abs() <= width.dot(rect.max - rect.min) + error
         };
-        self.runs.visit(near, |index| {
-            let Some(piece) = self.pieces.get(index) else {
+        let mut sides = [0.0; POINTS];
+        self.runs.visit_leaves(near, |leaf| {
+            let Some((start, mut changes)) = self.points.changes(cut, leaf, &mut sides) else {
                 return;
             };
-            let mut found = |s: f64, rising: bool| {
-                visit(&OutlineCrossing {
-                    piece: index as u32,
-                    s,
-                    point: piece.at(s),
-                    rising,
-                });
-            };
-            // One by one: mapping arrays is not inlined.
-            match *piece {
-                Piece::Line([a, b]) => {
-                    let (a, b) = (side(a), side(b));
-                    if (a >= 0.0) != (b >= 0.0) {
-                        found(a / (a - b), b >= 0.0);
-                    }
-                }
-                Piece::Quadratic([a, b, c]) => {
-                    roots([side(a), side(b), side(c)], error, &mut found)
-                }
-                Piece::Cubic([a, b, c, d]) => {
-                    roots([side(a), side(b), side(c), side(d)], error, &mut found);
+            while changes != 0 {
+                let place = start + changes.trailing_zeros() as usize;
+                let index = self.points.behind[place];
+                let Some(piece) = self.pieces.get(index as usize) else {
+                    changes &= changes - 1;
+                    continue;
+                };
+                let [first, last] = self.points.places[index as usize].map(|p| p as usize - start);
+                // Those of the piece are done with.
+                changes &= !0 << last;
+                let mut found = |s: f64, rising: bool| {
+                    visit(&OutlineCrossing {
+                        piece: index,
+                        s,
+                        point: piece.at(s),
+                        rising,
+                    });
+                };
+                match sides[first..=last] {
+                    [a, b] => found(a / (a - b), b >= 0.0),
+                    [a, b, c] => roots([a, b, c], error, &mut found),
+                    [a, b, c, d] => roots([a, b, c, d], error, &mut found),
+                    _ => {}
                 }
             }
         });
@@ -294,17 +392,8 @@ fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f6
 where
     [f64; N]: SingleRoot,
 {
-    let (mut positive, mut changes) = (0, 0);
-    let mut last = None;
-    for value in values {
-        let sign = value >= 0.0;
-        positive += u32::from(sign);
-        changes += u32::from(last.replace(sign).is_some_and(|last| last != sign));
-    }
-    // Nearly all pieces lie on one side.
-    if positive == 0 || positive == N as u32 {
-        return;
-    }
+    let signs = values.map(|value| value >= 0.0);
+    let changes = signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
     if changes == 1 && values.iter().all(|v| v.abs() > error) {
         let rising = values.first().is_some_and(|v| *v < 0.0);
         found(values.single_root(rising), rising);

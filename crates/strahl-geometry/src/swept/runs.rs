@@ -1,3 +1,4 @@
+use std::ops::Range;
 use strahl_math::DVec2;
 
 /// An upright rectangle.
@@ -48,15 +49,12 @@ struct Node {
     count: u32,
 }
 
-/// Most pieces in a leaf: testing their control points costs little more than testing a box.
-const LEAF: usize = 3;
-
 impl Runs {
-    /// Over pieces with these boxes.
-    pub(super) fn build(boxes: &[Rect]) -> Self {
+    /// Over pieces with these boxes, at most `leaf` of them in a leaf.
+    pub(super) fn build(boxes: &[Rect], leaf: usize) -> Self {
         let mut nodes = vec![];
         // Halving `n` pieces goes no deeper than the bits of `n`.
-        append(boxes, 0, &mut nodes);
+        append(boxes, leaf, 0, &mut nodes);
         Self {
             nodes: nodes.into_boxed_slice(),
         }
@@ -69,25 +67,36 @@ impl Runs {
 
     /// Visits the pieces of all leaves whose boxes pass the test, in order.
     #[inline]
-    pub(super) fn visit(&self, mut test: impl FnMut(&Rect) -> bool, mut visit: impl FnMut(usize)) {
+    pub(super) fn visit(&self, test: impl FnMut(&Rect) -> bool, visit: impl FnMut(usize)) {
+        let mut visit = visit;
+        self.visit_leaves(test, |pieces| pieces.for_each(&mut visit));
+    }
+
+    /// Visits the leaves whose boxes pass the test, in order, each as its pieces.
+    #[inline]
+    pub(super) fn visit_leaves(
+        &self,
+        mut test: impl FnMut(&Rect) -> bool,
+        mut visit: impl FnMut(Range<usize>),
+    ) {
         let mut index = 0;
         while let Some(node) = self.nodes.get(index) {
             if !test(&node.bounds) {
                 index = node.next as usize;
                 continue;
             }
-            let first = node.first as usize;
-            for piece in first..first + node.count as usize {
-                visit(piece);
+            if node.count > 0 {
+                let first = node.first as usize;
+                visit(first..first + node.count as usize);
             }
             index += 1;
         }
     }
 }
 
-fn append(boxes: &[Rect], first: usize, nodes: &mut Vec<Node>) {
+fn append(boxes: &[Rect], most: usize, first: usize, nodes: &mut Vec<Node>) {
     let bounds = boxes.iter().fold(Rect::EMPTY, |all, b| all.union(b));
-    let leaf = boxes.len() <= LEAF;
+    let leaf = boxes.len() <= most;
     let place = nodes.len();
     nodes.push(Node {
         bounds,
@@ -97,8 +106,8 @@ fn append(boxes: &[Rect], first: usize, nodes: &mut Vec<Node>) {
     });
     if !leaf {
         let (left, right) = boxes.split_at(boxes.len() / 2);
-        append(left, first, nodes);
-        append(right, first + left.len(), nodes);
+        append(left, most, first, nodes);
+        append(right, most, first + left.len(), nodes);
     }
     let next = nodes.len() as u32;
     if let Some(node) = nodes.get_mut(place) {
@@ -118,13 +127,13 @@ mod tests {
                     Rect::around(&[DVec2::splat(f64::from(i)), DVec2::splat(f64::from(i) + 0.9)])
                 })
                 .collect();
-            let runs = Runs::build(&boxes);
+            let runs = Runs::build(&boxes, 3);
             let (mut all, mut some) = (vec![], vec![]);
             runs.visit(|_| true, |i| all.push(i));
             assert_eq!(all, (0..count as usize).collect::<Vec<_>>());
             runs.visit(|b| b.min.x <= 10.5 && 10.5 <= b.max.x, |i| some.push(i));
             assert_eq!(some.contains(&10), count > 10);
-            assert!(some.len() <= LEAF);
+            assert!(some.len() <= 3);
         }
     }
 }
