@@ -3,8 +3,8 @@
 use super::orbit_set::{BALL, Event, LINE_BATCH, OrbitSet, Places, SURFACE};
 use crate::implicit::{Cell, Content, Visitor};
 use std::ops::ControlFlow;
-use strahl_math::roots::find_crossing;
-use strahl_math::{Aabb, DVec3};
+use strahl_math::roots::find_crossing_until;
+use strahl_math::{Aabb, DVec3, Interval};
 
 /// The longest step, as a part of the radius of the ball around the set: estimates are good for short distances only, and empty cells
 /// are passed at once anyway.
@@ -30,6 +30,8 @@ pub(super) struct March<'a, S, V> {
     length: f64,
     /// Where the ray is not needed any more.
     needed: f64,
+    /// Of crossings in this range of the ray's parameter an approximate place is enough.
+    rough: Interval,
     /// The last place that was looked at, and its value.
     s: f64,
     pub(super) value: f64,
@@ -51,6 +53,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         set: &'a S,
         (origin, direction): (DVec3, DVec3),
         (start, length, needed): (f64, f64, f64),
+        rough: Interval,
         visit: &'a mut V,
     ) -> Self {
         let fastest = direction.abs().max_element();
@@ -72,6 +75,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
             start,
             length,
             needed,
+            rough,
             s: 0.0,
             value: 0.0,
             clear: 0.0,
@@ -134,11 +138,19 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// Reports the crossing between a place with its value and this one.
     #[inline(never)]
     fn cross(&mut self, (s, value): (f64, f64)) -> ControlFlow<()> {
-        let at = |s| self.set.value(self.at(s));
-        let zero = find_crossing(s, self.s, value, self.value, at);
+        let (from, to) = (self.start + s, self.start + self.s);
+        let t = if self.rough.accepts(from) && self.rough.accepts(to) {
+            to
+        } else {
+            let at = |s| self.set.value(self.at(s));
+            // The value is not known better than that: the noise, with the slope along the ray, which is less than the whole one.
+            let (rounding, reach) = (self.set.rounding(), self.set.search().radius * self.pace);
+            let is_enough = |value, slope| value <= rounding * (0.25 * slope * reach + 1.0);
+            self.start + find_crossing_until([s, self.s], [value, self.value], at, is_enough)
+        };
         self.inside = !self.inside;
         (self.visit)(Event::Crossing {
-            t: self.start + zero,
+            t,
             surface: SURFACE,
             enters: self.inside,
         })

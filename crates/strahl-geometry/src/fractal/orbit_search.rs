@@ -2,11 +2,20 @@
 
 use super::march::March;
 use super::orbit_set::{BALL, Event, OrbitSet, SURFACE};
-use crate::implicit::Passage;
+use crate::implicit::{EXACT, Passage};
 use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId, SurfacePoint};
 use std::ops::ControlFlow;
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{DVec3, Interval, Ray};
+
+/// What is asked of a ray.
+#[derive(Clone, Copy)]
+struct Asked {
+    range: Interval,
+    from: Option<SurfaceId>,
+    /// Of crossings that certainly are in this range an approximate place is enough.
+    rough: Interval,
+}
 
 /// Reports the events along a ray to the visitor until it stops. Those outside of the range may be left out.
 ///
@@ -15,9 +24,10 @@ use strahl_math::{DVec3, Interval, Ray};
 fn walk(
     set: &impl OrbitSet,
     ray: &Ray,
-    (range, from): (Interval, Option<SurfaceId>),
+    asked: Asked,
     mut visit: impl FnMut(Event) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
+    let Asked { range, from, .. } = asked;
     let Some(passage) = set.search().around.passage(ray, None) else {
         return ControlFlow::Continue(());
     };
@@ -39,17 +49,14 @@ fn walk(
     let mut side = None;
     if let Some(end) = behind {
         let part = (enter, end);
-        side = search_part(set, ray, part, (range, None), &passage, None, &mut visit)?;
+        let asked = Asked {
+            from: None,
+            ..asked
+        };
+        side = search_part(set, ray, part, asked, &passage, None, &mut visit)?;
     }
-    search_part(
-        set,
-        ray,
-        (start, exit),
-        (range, from),
-        &passage,
-        side,
-        &mut visit,
-    )?;
+    let part = (start, exit);
+    search_part(set, ray, part, asked, &passage, side, &mut visit)?;
     ControlFlow::Continue(())
 }
 
@@ -59,7 +66,7 @@ fn search_part(
     set: &impl OrbitSet,
     ray: &Ray,
     (start, end): (f64, f64),
-    (range, from): (Interval, Option<SurfaceId>),
+    asked: Asked,
     passage: &Passage,
     side: Option<bool>,
     visit: &mut impl FnMut(Event) -> ControlFlow<()>,
@@ -69,10 +76,10 @@ fn search_part(
     }
     let (length, origin) = (end - start, ray.at(start));
     // An empty range has a side at its start, too.
-    let needed = range.max.max(range.min) - start;
+    let needed = asked.range.max.max(asked.range.min) - start;
     let line = (origin, ray.direction);
-    let mut march = March::new(set, line, (start, length, needed), visit);
-    if from.is_some() && march.value.abs() < set.noise(origin) {
+    let mut march = March::new(set, line, (start, length, needed), asked.rough, visit);
+    if asked.from.is_some() && march.value.abs() < set.noise(origin) {
         // Where rounding hides the side, the direction of the ray decides.
         let leaves = set.gradient(origin).dot(ray.direction) >= 0.0;
         march.set_side(!leaves);
@@ -117,9 +124,34 @@ pub(super) fn closest_hit(
     range: Interval,
     from: Option<SurfaceId>,
 ) -> Option<PrimHit> {
+    let asked = Asked {
+        range,
+        from,
+        rough: EXACT,
+    };
+    first_hit(set, ray, asked)
+}
+
+/// Whether there is a hit in a range. Where it is need not be computed.
+pub(super) fn any_hit(
+    set: &impl OrbitSet,
+    ray: &Ray,
+    range: Interval,
+    from: Option<SurfaceId>,
+) -> bool {
+    let asked = Asked {
+        range,
+        from,
+        rough: range,
+    };
+    first_hit(set, ray, asked).is_some()
+}
+
+fn first_hit(set: &impl OrbitSet, ray: &Ray, asked: Asked) -> Option<PrimHit> {
+    let range = asked.range;
     let mut closest = None;
     // The result only matters while visiting.
-    let _ = walk(set, ray, (range, from), |event| match event {
+    let _ = walk(set, ray, asked, |event| match event {
         Event::Crossing { t, surface, .. } if surface == SURFACE && range.accepts(t) => {
             closest = Some(PrimHit::simple(t, SURFACE.facet));
             ControlFlow::Break(())
@@ -141,7 +173,11 @@ pub(super) fn surface_at(set: &impl OrbitSet, ray: &Ray, hit: &PrimHit) -> Surfa
     let mut p = ray.at(hit.t);
     let mut value = set.value(p);
     let mut gradient = set.gradient(p);
+    let noise = set.noise(p);
     for _ in 0..2 {
+        if value.abs() <= noise {
+            break;
+        }
         let step = gradient * (value / gradient.dot(gradient));
         if !(step.length() < set.search().shortest) {
             break;
@@ -154,7 +190,7 @@ pub(super) fn surface_at(set: &impl OrbitSet, ray: &Ray, hit: &PrimHit) -> Surfa
         value = next;
         gradient = set.gradient(p);
     }
-    let off = (set.noise(p) + value.abs()) / gradient.length();
+    let off = (noise + value.abs()) / gradient.length();
     let off = if off < set.search().shortest {
         off
     } else {
@@ -181,8 +217,12 @@ pub(super) fn crossings(
     } else {
         range.min
     };
-    let needed = Interval::new(start, range.max);
-    let _ = walk(set, ray, (needed, from), |event| {
+    let asked = Asked {
+        range: Interval::new(start, range.max),
+        from,
+        rough: EXACT,
+    };
+    let _ = walk(set, ray, asked, |event| {
         match event {
             Event::Start { inside } => out.inside_at_start = inside,
             Event::Crossing { t, enters, .. } if t <= start => out.inside_at_start = enters,

@@ -104,6 +104,8 @@ pub(super) trait OrbitSet: Sized {
     fn is_decided(&self, center: DVec3, radius: f64) -> bool;
     /// The gradient of the value.
     fn gradient(&self, p: DVec3) -> DVec3;
+    /// A bound of the relative rounding error of an orbit's points.
+    fn rounding(&self) -> f64;
     /// A bound of the rounding error of the value.
     fn noise(&self, p: DVec3) -> f64;
     /// The length of a direction as [`Place::reach`] counts it.

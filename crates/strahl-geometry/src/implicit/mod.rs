@@ -16,3 +16,11 @@ pub use height_field::HeightField;
 pub use isosurface::{Isosurface, IsosurfaceOptions};
 pub(crate) use octree::{Cell, Content, Octree, Visitor};
 pub use parametric::{Parametric, ParametricOptions};
+use strahl_math::Interval;
+
+/// The rough range of a search that finds all crossings exactly: no parameter is in it. Of crossings in a rough range an approximate place is
+/// enough.
+pub(crate) const EXACT: Interval = Interval {
+    min: f64::INFINITY,
+    max: f64::NEG_INFINITY,
+};

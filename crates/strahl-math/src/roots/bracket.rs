@@ -63,7 +63,18 @@ pub fn find_crossing(
     high: f64,
     at_low: f64,
     at_high: f64,
+    function: impl FnMut(f64) -> f64,
+) -> f64 {
+    find_crossing_until([low, high], [at_low, at_high], function, |_, _| false)
+}
+
+/// [`find_crossing`] between two places with these values, which also ends at a place where the value is small enough: `is_enough` is given the
+/// absolute value, and that of the slope from there to the other end of what is left.
+pub fn find_crossing_until(
+    [low, high]: [f64; 2],
+    [at_low, at_high]: [f64; 2],
     mut function: impl FnMut(f64) -> f64,
+    is_enough: impl Fn(f64, f64) -> bool,
 ) -> f64 {
     // x1 is the newest point, x2 the end on the other side of the zero, x3 the point before.
     let (mut x1, mut f1) = (low, at_low);
@@ -82,7 +93,7 @@ pub fn find_crossing(
         }
         (x1, f1) = (x, f);
         let nearest = if f1.abs() < f2.abs() { x1 } else { x2 };
-        if f1 == 0.0 {
+        if f1 == 0.0 || is_enough(f1.abs(), ((f1 - f2) / (x1 - x2)).abs()) {
             return x1;
         }
         let least = 2.0 * f64::EPSILON * nearest.abs() / (x2 - x1).abs();
@@ -112,7 +123,7 @@ pub fn find_crossing(
 
 #[cfg(test)]
 mod tests {
-    use super::{find_crossing, find_root};
+    use super::{find_crossing, find_crossing_until, find_root};
 
     #[test]
     fn crossings_are_found_from_values_alone() {
@@ -126,6 +137,21 @@ mod tests {
             assert!((found - zero).abs() <= 4.0 * f64::EPSILON * zero, "{found}");
             assert!(evaluations < 20, "{evaluations}");
         }
+        // Only as near as it is asked for.
+        let mut evaluations = 0;
+        let near = find_crossing_until(
+            [0.0, 2.0],
+            [-0.3, 8.5],
+            |x| {
+                evaluations += 1;
+                (x - 0.3) * (1.0 + x * x)
+            },
+            |value, slope| value <= 1e-6 * slope,
+        );
+        assert!(
+            (near - 0.3).abs() < 2e-6 && evaluations < 8,
+            "{near} {evaluations}"
+        );
         // A jump, and values that are no numbers.
         let step = find_crossing(0.0, 1.0, -1.0, 1.0, |x| if x < 0.7 { -1.0 } else { 1.0 });
         assert!((step - 0.7).abs() < 1e-15);

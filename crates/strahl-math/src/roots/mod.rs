@@ -12,6 +12,6 @@ mod newton;
 mod quadratic;
 
 pub use bernstein::{Bernstein, FourBernsteins, Isolated, RootCount, Roots, Window};
-pub use bracket::{find_crossing, find_root};
+pub use bracket::{find_crossing, find_crossing_until, find_root};
 pub use newton::newton;
 pub use quadratic::quadratic;

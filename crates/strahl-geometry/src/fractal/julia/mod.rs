@@ -188,10 +188,13 @@ impl OrbitSet for Julia {
         DVec3::new(x, y, z) + self.slice.factors * w
     }
 
+    fn rounding(&self) -> f64 {
+        gamma(16 * self.rule.points.min(1 << 16) + 16)
+    }
+
     /// The rounding error of the value: the error of the first points, propagated, and those of all further ones.
     fn noise(&self, p: DVec3) -> f64 {
-        gamma(16 * self.rule.points.min(1 << 16) + 16)
-            * (self.rule.slope(self.number(p)) * self.search.radius + 1.0)
+        self.rounding() * (self.rule.slope(self.number(p)) * self.search.radius + 1.0)
     }
 
     /// The distance between numbers.
@@ -223,6 +226,16 @@ impl Primitive for Julia {
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         orbit_search::closest_hit(self, ray, range, from)
+    }
+
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> bool {
+        orbit_search::any_hit(self, ray, range, from)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

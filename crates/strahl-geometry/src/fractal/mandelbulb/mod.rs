@@ -204,12 +204,16 @@ impl OrbitSet for Mandelbulb {
         DVec3::new(h.dot(rows[0]), h.dot(rows[1]), h.dot(rows[2])) / limit
     }
 
+    fn rounding(&self) -> f64 {
+        gamma(64 * self.iterations.min(1 << 16) + 64)
+    }
+
     /// The error of the first points, propagated, and those of all further ones.
     fn noise(&self, p: DVec3) -> f64 {
         let (_, r, slope) = self.follow(p);
         let radius = self.search.radius;
         let end = if r < radius { r } else { radius };
-        gamma(64 * self.iterations.min(1 << 16) + 64) * (slope * end / radius + 1.0)
+        self.rounding() * (slope * end / radius + 1.0)
     }
 }
 
@@ -267,6 +271,16 @@ impl Primitive for Mandelbulb {
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         orbit_search::closest_hit(self, ray, range, from)
+    }
+
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> bool {
+        orbit_search::any_hit(self, ray, range, from)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

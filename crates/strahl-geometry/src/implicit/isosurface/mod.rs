@@ -4,6 +4,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
+use super::EXACT;
 use super::container::Container;
 use super::octree::{Cell, Content, Octree, Visitor as _};
 use super::slopes::Slopes;
@@ -400,12 +401,6 @@ fn place_noise(p: DVec3, gradient: DVec3) -> f64 {
 fn sides(cell: &Aabb) -> [Bounds; 3] {
     [0, 1, 2].map(|k| Bounds::new(cell.min[k], cell.max[k]))
 }
-
-/// The rough range of a walk that finds all crossings exactly: no parameter is in it.
-const EXACT: Interval = Interval {
-    min: f64::INFINITY,
-    max: f64::NEG_INFINITY,
-};
 
 /// Stores an event that is a visible hit in a range, and stops there or behind the range.
 fn first_hit(event: Event, range: Interval, hit: &mut Option<PrimHit>) -> ControlFlow<()> {
