@@ -122,7 +122,37 @@ impl Aabb {
         (inside.min <= inside.max).then_some(inside)
     }
 
-    /// The same for one axis: the part of the range (perhaps empty) where `o + t d` is between two planes; `None` if it never is.
+    /// Of the distances of an origin from 0, that much is added to boxes by [`Aabb::may_be_met`]: 2⁻⁴⁰.
+    pub const MARGIN_OF_ORIGIN: f64 = 1.0 / (1_u64 << 40) as f64;
+
+    /// By how much [`Aabb::may_be_met`] widens the box for a ray from an origin: by 2⁻²⁰ of its largest side as well.
+    #[inline]
+    pub fn margin(&self, origin: DVec3) -> DVec3 {
+        const OF_SIZE: f64 = 1.0 / 1_048_576.0;
+        let size = (self.max - self.min).max_element();
+        DVec3::splat(size * OF_SIZE) + origin.abs() * Self::MARGIN_OF_ORIGIN
+    }
+
+    /// Whether the ray may meet the box in the range. The box is widened by far more than all rounding errors of points on a surface in it
+    /// ([`Aabb::margin`]), so that a ray which does not meet it meets nothing in it.
+    #[inline]
+    pub fn may_be_met(&self, ray: &Ray, range: Interval) -> bool {
+        let margin = self.margin(ray.origin);
+        let inverse = DVec3::ONE / ray.direction;
+        let a = (self.min - margin - ray.origin) * inverse;
+        let b = (self.max + margin - ray.origin) * inverse;
+        // A product of 0 and infinity, not a number, comes from an origin on the widened border, outside of the box.
+        let (mut near, mut far) = (range.min, range.max);
+        for axis in 0..3 {
+            let (a, b) = (a[axis], b[axis]);
+            let (first, last) = if a < b { (a, b) } else { (b, a) };
+            near = if first > near { first } else { near };
+            far = if last < far { last } else { far };
+        }
+        near <= far
+    }
+
+    /// [`Aabb::clip`] for one axis: the part of the range (perhaps empty) where `o + t d` is between two planes; `None` if it never is.
     #[inline]
     pub fn clip_axis([low, high]: [f64; 2], o: f64, d: f64, range: Interval) -> Option<Interval> {
         if d == 0.0 {
@@ -163,6 +193,45 @@ mod tests {
         let outside = Ray::new(DVec3::new(-0.1, 0.5, -1.0), DVec3::Z);
         assert_eq!(b.clip(&outside, Interval::FORWARD), None);
         assert!(Aabb::EVERYTHING.clip(&outside, Interval::FORWARD).is_some());
+    }
+
+    #[test]
+    fn a_ray_that_meets_a_point_of_a_box_may_meet_the_box() {
+        let mut state = 7_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let mut missed = 0;
+        for round in 0..20_000 {
+            let mut point = |size: f64| DVec3::new(random(), random(), random()) * size;
+            let (a, b) = (point(1.0), point(1.0));
+            let all = Aabb::from_points([a, b]);
+            let mut direction = point([1.0, 1e-9, 1e9][round % 3]);
+            // Within a face, and along an axis.
+            direction[round % 5 % 3] *= f64::from(u8::from(round % 4 != 0));
+            let way = point(1.0).x.abs() * 1e3;
+            let part = point(0.5) + 0.5;
+            let mut inside = a + (b - a) * part;
+            inside[round % 3] = if round % 2 == 0 {
+                a[round % 3]
+            } else {
+                inside[round % 3]
+            };
+            let t = way / direction.length();
+            let ray = Ray::new(inside - direction * t, direction);
+            let near = Interval::new(0.999 * t, 1.001 * t);
+            for range in [Interval::FORWARD, Interval::LINE, near] {
+                assert!(all.may_be_met(&ray, range), "{round} {ray:?} {all:?}");
+            }
+            let behind = Interval::new(-2.0 * t, -t);
+            assert!(way < 4.0 || !all.may_be_met(&ray, behind), "{round}");
+            let beside = Ray::new(ray.origin + DVec3::splat(2.1), direction);
+            missed += u32::from(!all.may_be_met(&beside, Interval::LINE));
+        }
+        assert!(missed > 10_000, "{missed}");
     }
 
     #[test]

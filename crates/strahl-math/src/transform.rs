@@ -191,6 +191,16 @@ impl Transform {
         )
     }
 
+    /// Whether boxes along the axes become boxes along noticeably other directions: not if every axis goes to an axis, but for a thousandth.
+    pub fn turns_boxes(&self) -> bool {
+        let columns = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
+        columns.into_iter().any(|column| {
+            let column = column.abs();
+            let rest = column.element_sum() - column.max_element();
+            rest > column.max_element() * 1e-3
+        })
+    }
+
     /// An upper bound of the image of an error box: `|L| e`, coordinate by coordinate.
     #[inline]
     pub fn error_to_world(&self, e: DVec3) -> DVec3 {

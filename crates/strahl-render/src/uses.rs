@@ -4,16 +4,59 @@ use crate::appearance::{Appearance, Appearances};
 use crate::light_sets::Lit;
 use std::sync::Arc;
 use strahl_geometry::{Primitive, Shape, TriangleMesh};
-use strahl_math::{Aabb, Transform};
+use strahl_math::{Aabb, Interval, Ray, Transform};
 
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeUse {
     pub(crate) shape: Shape,
     pub(crate) transform: Option<Box<Transform>>,
+    /// The box around the shape in its own space, where it tells rays apart that the box in the group's space does not.
+    pub(crate) own_box: Option<Box<Aabb>>,
     /// Object and material; CSG trees have one per leaf.
     pub(crate) appearance: Appearances,
     /// Where its inside is, if that is not what the surface says.
     pub(crate) inside: Option<Box<Inside>>,
+}
+
+impl ShapeUse {
+    /// The box around a shape in its own space, if rays should be tested for it before they are for the shape.
+    ///
+    /// Rays that reach the shape have met the box around it in the space of the group. If the map turns the shape, a ray in three misses the
+    /// smaller box along its own axes. The test takes a tenth of the time of most of the shapes below; the others are quick, or have a box of their own.
+    pub(crate) fn own_box(shape: &Shape, map: &Transform) -> Option<Box<Aabb>> {
+        let pays = matches!(
+            shape,
+            Shape::Blob(_)
+                | Shape::Csg(_)
+                | Shape::Glyph(_)
+                | Shape::GridIsosurface(_)
+                | Shape::Isosurface(_)
+                | Shape::Julia(_)
+                | Shape::Lathe(_)
+                | Shape::Lemon(_)
+                | Shape::Mandelbulb(_)
+                | Shape::Menger(_)
+                | Shape::Ovus(_)
+                | Shape::Parametric(_)
+                | Shape::Polynomial(_)
+                | Shape::Prism(_)
+                | Shape::Sor(_)
+                | Shape::SphereSweep(_)
+                | Shape::Superellipsoid(_)
+                | Shape::Torus(_)
+        );
+        let bounds = shape.bounds();
+        (pays && map.turns_boxes() && bounds.is_bounded() && !bounds.is_empty())
+            .then(|| Box::new(bounds))
+    }
+
+    /// Whether a ray in the space of the shape may meet it in the range.
+    #[inline(always)]
+    pub(crate) fn may_be_met(&self, ray: &Ray, range: Interval) -> bool {
+        self.own_box
+            .as_ref()
+            .is_none_or(|own| own.may_be_met(ray, range))
+    }
 }
 
 /// Where the inside of a solid is that is cut or inverted.

@@ -6,7 +6,7 @@ use super::LANES;
 use crate::primitives::convex::{End, Span};
 use crate::{PrimHit, Shape};
 use strahl_accel::PACKET;
-use strahl_math::{DMat3, DVec3, Interval, Ray, Transform};
+use strahl_math::{Aabb, DMat3, DVec3, Interval, Ray, Transform};
 use strahl_simd::{Isa, Simd, dispatch};
 
 /// Groups of four rays in a packet.
@@ -35,6 +35,54 @@ impl PacketRays {
             }
         }
         all
+    }
+
+    /// Those of the rays `lanes`, as bits, that may meet a box in the space to which a map leads, at parameters of at least `min` and at most
+    /// `t_max`: four at a time, each as [`Aabb::may_be_met`] says.
+    pub fn may_meet(
+        &self,
+        bounds: &Aabb,
+        map: Option<&Transform>,
+        lanes: u32,
+        min: f64,
+        t_max: &[f64; PACKET],
+    ) -> u32 {
+        dispatch!(Simd::best(), isa => self.may_meet_with(isa, bounds, map, lanes, min, t_max))
+    }
+
+    #[inline(always)]
+    fn may_meet_with<I: Isa>(
+        &self,
+        isa: I,
+        bounds: &Aabb,
+        map: Option<&Transform>,
+        lanes: u32,
+        min: f64,
+        t_max: &[f64; PACKET],
+    ) -> u32 {
+        let mut met = 0;
+        let one = isa.splat(1.0);
+        let (of_size, of_origin) = (bounds.margin(DVec3::ZERO), Aabb::MARGIN_OF_ORIGIN);
+        for (group, t_max) in t_max.as_chunks::<LANES>().0.iter().enumerate() {
+            let wanted = lanes >> (group * LANES) & 0b1111;
+            if wanted == 0 {
+                continue;
+            }
+            let rays = self.four(isa, group, map);
+            let (mut near, mut far) = (isa.splat(min), isa.load(t_max));
+            for axis in 0..3 {
+                let (o, inverse) = (rays.origin[axis], isa.div(one, rays.direction[axis]));
+                let margin = isa.mul(isa.abs(o), isa.splat(of_origin));
+                let margin = isa.add(isa.splat(of_size[axis]), margin);
+                let low = isa.sub(isa.sub(isa.splat(bounds.min[axis]), margin), o);
+                let high = isa.sub(isa.add(isa.splat(bounds.max[axis]), margin), o);
+                let (a, b) = (isa.mul(low, inverse), isa.mul(high, inverse));
+                near = isa.max(isa.min(a, b), near);
+                far = isa.min(isa.max(a, b), far);
+            }
+            met |= (isa.le(near, far) & wanted) << (group * LANES);
+        }
+        met
     }
 
     /// One group, in the space to which a map leads.
@@ -373,6 +421,41 @@ mod tests {
             };
         }
         Quadric::new(coefficients)
+    }
+
+    #[test]
+    fn packets_may_meet_the_boxes_that_single_rays_may_meet() {
+        let mut random = Random::new(8);
+        let (mut met, mut missed) = (0, 0);
+        for round in 0..2000 {
+            let center = DVec3::new(random.unit(), random.unit(), random.unit());
+            let half = DVec3::new(random.unit(), 0.3 * random.unit(), random.unit());
+            let bounds = Aabb::new(center - half, center + half);
+            let turned = Transform::rotate(DVec3::new(0.3, 1.0, random.unit()), random.unit());
+            let map = (round % 2 == 0).then_some(&turned);
+            let all = rays(&mut random, center);
+            let t_max = std::array::from_fn(|_| match random.below(3) {
+                0 => f64::NEG_INFINITY,
+                1 => 2.0 * random.unit(),
+                _ => f64::INFINITY,
+            });
+            let lanes = random.below(1 << PACKET) as u32;
+            let coordinates = PacketRays::new(&all);
+            let mut expected = 0;
+            for (lane, ray) in all.iter().enumerate() {
+                let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
+                let range = Interval::new(0.1, t_max[lane]);
+                expected |= u32::from(bounds.may_be_met(&inner, range)) << lane;
+            }
+            for simd in Simd::available() {
+                let found = dispatch!(simd, isa =>
+                    coordinates.may_meet_with(isa, &bounds, map, lanes, 0.1, &t_max));
+                assert_eq!(found, expected & lanes, "{round} {simd:?}");
+            }
+            met += (expected & lanes).count_ones();
+            missed += (!expected & lanes).count_ones();
+        }
+        assert!(met > 1000 && missed > 1000, "{met} {missed}");
     }
 
     #[test]

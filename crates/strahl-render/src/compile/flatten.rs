@@ -51,6 +51,7 @@ impl FlatGroup {
                 self.shapes.push(ShapeUse {
                     shape,
                     transform: None,
+                    own_box: None,
                     appearance,
                     inside: None,
                 });
@@ -407,6 +408,7 @@ impl Pass {
         group.shapes.push(ShapeUse {
             shape: shape.clone(),
             transform: Some(Box::new(todo.transform)),
+            own_box: ShapeUse::own_box(shape, &todo.transform),
             appearance: Appearances::One(appearance),
             inside: None,
         });

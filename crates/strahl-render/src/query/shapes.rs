@@ -5,10 +5,11 @@ use crate::hit::{Hit, Origin};
 use crate::scene::RenderGroup;
 use strahl_geometry::blocks::PacketSpans;
 use strahl_geometry::{PrimHit, Primitive, Scratch, Shape, SurfaceId};
-use strahl_math::{Interval, Ray, Transform};
+use strahl_math::{Aabb, Interval, Ray, Transform};
 
 /// A shape of a group, as a primitive that [has no filter](crate::prim::Prim::unfiltered_shape).
 pub(super) struct UnfilteredShape<'g> {
+    pub(super) own_box: Option<&'g Aabb>,
     pub(super) shape: &'g Shape,
     pub(super) transform: Option<&'g Transform>,
     /// The number of its first element, in the group.
@@ -24,6 +25,7 @@ impl<'g> UnfilteredShape<'g> {
         let used = &group.shapes[index as usize];
         let first = group.first_id(id);
         Self {
+            own_box: used.own_box.as_deref(),
             shape: &used.shape,
             transform: used.transform.as_deref(),
             first,
@@ -37,6 +39,15 @@ impl<'g> UnfilteredShape<'g> {
         SurfaceId {
             element: (from - self.first) as u32,
             facet: origin.facet,
+        }
+    }
+
+    /// Whether a ray may meet it in the range, as far as the box in its own space tells.
+    #[inline(always)]
+    pub(super) fn may_be_met(&self, ray: &Ray, range: Interval) -> bool {
+        match (self.own_box, self.transform) {
+            (Some(own), Some(map)) => own.may_be_met(&map.ray_to_object(ray), range),
+            _ => true,
         }
     }
 

@@ -96,7 +96,10 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let slot = self.search.slot;
         slot.enter_for(Phase::Intersection, shape.number);
         let range = Interval::new(self.range_min, t_max);
-        let hit = shape.meet::<Q>(self.ray, range, from, self.search.scratch);
+        let hit = match shape.may_be_met(self.ray, range) {
+            true => shape.meet::<Q>(self.ray, range, from, self.search.scratch),
+            false => None,
+        };
         slot.enter(Phase::Traversal);
         let Some(hit) = hit else {
             return t_max;
@@ -220,6 +223,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let map = used.transform.as_ref();
         let ray = map.map_or(*self.ray, |m| m.ray_to_object(self.ray));
         let range = Interval::new(self.range_min, t_max);
+        if !used.may_be_met(&ray, range) {
+            return t_max;
+        }
         let slot = self.search.slot;
         slot.enter_for(Phase::Intersection, self.base + first);
         let mut hits = self.search.scratch.take_hits();
@@ -301,6 +307,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                     .transform
                     .as_ref()
                     .map_or(*self.ray, |m| m.ray_to_object(self.ray));
+                if !used.may_be_met(&ray, range) {
+                    return None;
+                }
                 used.shape
                     .closest_hit(&ray, range, from, self.search.scratch)
             }

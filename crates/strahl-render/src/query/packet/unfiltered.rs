@@ -24,6 +24,11 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         self.shared
             .slot
             .enter_for(Phase::Intersection, shape.number);
+        let lanes = self.lanes_near(&shape, lanes, t_max);
+        if lanes == 0 {
+            self.shared.slot.enter(Phase::Traversal);
+            return;
+        }
         let side_by_side = match (shape.shape, shape.transform) {
             // The test of a box along the axes takes too little time.
             (Shape::Cuboid(_), None) => false,
@@ -62,6 +67,29 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
             lanes |= u32::from(*from == id) << lane;
         }
         lanes
+    }
+
+    /// Those of the lanes whose rays may meet a shape, as far as the box in its own space tells.
+    #[inline(always)]
+    fn lanes_near(
+        &mut self,
+        shape: &UnfilteredShape<'_>,
+        lanes: u32,
+        t_max: &[f64; PACKET],
+    ) -> u32 {
+        let Some(own) = shape.own_box else {
+            return lanes;
+        };
+        let min = self.asked.min;
+        self.coordinates()
+            .may_meet(own, shape.transform, lanes, min, t_max)
+    }
+
+    /// The rays coordinate by coordinate.
+    #[inline]
+    fn coordinates(&mut self) -> &PacketRays {
+        self.coordinates
+            .get_or_insert_with(|| PacketRays::new(self.asked.rays))
     }
 
     /// The surface of a shape that the ray of a lane starts on, if it starts on this primitive.
