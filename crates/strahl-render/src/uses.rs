@@ -26,9 +26,7 @@ impl ShapeUse {
     pub(crate) fn own_box(shape: &Shape, map: &Transform) -> Option<Box<Aabb>> {
         let pays = matches!(
             shape,
-            Shape::Blob(_)
-                | Shape::Csg(_)
-                | Shape::Glyph(_)
+            Shape::Glyph(_)
                 | Shape::GridIsosurface(_)
                 | Shape::Isosurface(_)
                 | Shape::Julia(_)
@@ -38,12 +36,10 @@ impl ShapeUse {
                 | Shape::Menger(_)
                 | Shape::Ovus(_)
                 | Shape::Parametric(_)
-                | Shape::Polynomial(_)
                 | Shape::Prism(_)
                 | Shape::Sor(_)
                 | Shape::SphereSweep(_)
                 | Shape::Superellipsoid(_)
-                | Shape::Torus(_)
         );
         let bounds = shape.bounds();
         (pays && map.turns_boxes() && bounds.is_bounded() && !bounds.is_empty())

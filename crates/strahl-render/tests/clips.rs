@@ -1,8 +1,6 @@
 //! Shapes that are clipped.
 
-mod common;
-
-use common::compiled;
+use crate::common::compiled;
 use strahl_geometry::{Cuboid, MeshData, Plane, Sphere, TriangleMesh};
 use strahl_math::{DVec3, Transform};
 use strahl_render::{RenderOptions, RenderScene, render};

@@ -1,11 +1,9 @@
 //! The film has the same bits whatever accelerator, threads, tile order and regions made it.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use common::{compiled, every_shape, glass_and_mirrors, patches, rendered};
+use crate::common::{compiled, every_shape, glass_and_mirrors, patches, rendered};
 use strahl_accel::AcceleratorKind;
 use strahl_geometry::Primitive;
 use strahl_math::{DVec3, Transform};

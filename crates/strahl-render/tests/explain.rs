@@ -1,8 +1,6 @@
 //! A pixel's ray tree adds up to the pixel.
 
-mod common;
-
-use common::{compiled, glass_and_mirrors, rendered};
+use crate::common::{compiled, glass_and_mirrors, rendered};
 use strahl_math::Interval;
 use strahl_render::{
     BranchEnd, Intersector, RayKind, Refinement, RenderOptions, Sampling, explain,

@@ -1,8 +1,6 @@
 //! Groups used again.
 
-mod common;
-
-use common::{compiled, rendered};
+use crate::common::{compiled, rendered};
 use strahl_geometry::{Cuboid, Cylinder, Plane, Quadric, Sphere};
 use strahl_math::{DVec3, Ray, Transform};
 use strahl_render::{RayTree, RenderScene, TraceSettings, trace::TreeTracer};

@@ -1,8 +1,6 @@
 //! Long paths, large trees and large pictures.
 
-mod common;
-
-use common::{compiled, rendered};
+use crate::common::{compiled, rendered};
 use strahl_geometry::{Plane, Sphere};
 use strahl_math::DVec3;
 use strahl_render::{BatchMemory, RayCounts, RenderOptions, RenderScene, Rendered, TraceSettings};

@@ -1,8 +1,6 @@
 //! Reflection, transparency and shadows against what can be computed by hand.
 
-mod common;
-
-use common::compiled;
+use crate::common::compiled;
 use strahl_geometry::{Cuboid, Sphere};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_render::{

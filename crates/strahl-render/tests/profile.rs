@@ -1,8 +1,6 @@
 //! Profiles: what threads are doing while a picture is traced.
 
-mod common;
-
-use common::compiled;
+use crate::common::compiled;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use strahl_geometry::{Plane, Sphere, Torus};

@@ -1,8 +1,6 @@
 //! Rays and points asked one by one or by the thousand.
 
-mod common;
-
-use common::{every_shape, glass_and_mirrors};
+use crate::common::{every_shape, glass_and_mirrors};
 use std::sync::Arc;
 use strahl_geometry::{Cuboid, Cylinder, MeshData, Plane, Sphere, TriangleMesh};
 use strahl_math::{DVec3, Interval, Ray, Transform};

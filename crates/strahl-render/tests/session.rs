@@ -1,8 +1,6 @@
 //! Sessions: views, sinks, stops and progressive pictures.
 
-mod common;
-
-use common::{compiled, every_shape, glass_and_mirrors, patches, rendered};
+use crate::common::{compiled, every_shape, glass_and_mirrors, patches, rendered};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};

@@ -1,8 +1,6 @@
 //! POV-Ray's textures on objects: their space, layers and shadows.
 
-mod common;
-
-use common::{compiled, rendered};
+use crate::common::{compiled, rendered};
 use strahl_geometry::{Cuboid, Sphere};
 use strahl_math::{DVec3, Ray};
 use strahl_render::{TraceSettings, trace::TreeTracer};

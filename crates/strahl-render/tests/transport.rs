@@ -1,8 +1,6 @@
 //! Methods of light transport plug into the trace loop: toys that show that it has the places for them.
 
-mod common;
-
-use common::{compiled, glass_and_mirrors};
+use crate::common::{compiled, glass_and_mirrors};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

@@ -1,11 +1,9 @@
 //! No ray slips through between triangles: rays from inside a closed mesh, aimed as exactly as floats allow at points of its edges
 //! and at its vertices, must hit it.
 //!
-//! `STRAHL_STRESS=10000000 cargo test --release -p strahl-render --test watertight` tries that many rays on each mesh.
+//! `STRAHL_STRESS=10000000 cargo test --release -p strahl-render --test suite watertight` tries that many rays on each mesh.
 
-mod common;
-
-use common::compiled;
+use crate::common::compiled;
 use std::collections::HashMap;
 use strahl_geometry::{MeshData, Shape, TriangleMesh};
 use strahl_math::{DVec3, Interval, Ray};

@@ -1,8 +1,6 @@
 //! Means over pixels in scenes whose colours are not linear, and what POV-Ray 3.7 makes of the same.
 
-mod common;
-
-use common::parse_with;
+use crate::common::parse_with;
 use strahl_render::{CompileOptions, Film, Region, RenderOptions, Sampling, compile, render};
 use strahl_sdl::MemoryHost;
 use strahl_shade::srgb;

@@ -1,11 +1,9 @@
 //! Checks the table of features in the manual (docs/src/pov-ray.md) against the parser: each word in `data/features.tsv` has a
 //! few tokens that use it, and counts as done if they are read without a message.
 //!
-//! `STRAHL_UPDATE=1 cargo test -p strahl-sdl --test features` writes the table.
+//! `STRAHL_UPDATE=1 cargo test -p strahl-sdl --test suite features` writes the table.
 
-mod common;
-
-use common::parse_with;
+use crate::common::parse_with;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -92,7 +90,7 @@ fn the_manual_says_what_is_done() {
     } else {
         assert!(
             text == now,
-            "docs/src/pov-ray.md is not up to date; run: STRAHL_UPDATE=1 cargo test -p strahl-sdl --test features"
+            "docs/src/pov-ray.md is not up to date; run: STRAHL_UPDATE=1 cargo test -p strahl-sdl --test suite features"
         );
     }
 }

@@ -1,8 +1,6 @@
 //! Malicious texts: each ends soon, with an error that says what is wrong.
 
-mod common;
-
-use common::{errors, parse_with};
+use crate::common::{errors, parse_with};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -1,8 +1,6 @@
 //! Directives, macros, loops and scopes.
 
-mod common;
-
-use common::{debug, errors, parse_with};
+use crate::common::{debug, errors, parse_with};
 use strahl_sdl::MemoryHost;
 
 /// The values of several floats, by `#debug`.

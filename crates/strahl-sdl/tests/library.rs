@@ -1,12 +1,8 @@
 //! The include library: every documented name exists with its kind, and looks as it did when it was compared with POV-Ray (`cargo
 //! xtask looks`).
 
-mod common;
-#[path = "common/plates.rs"]
-mod plates;
-
-use common::{parse_with, tool};
-use plates::{Name, Sheet};
+use crate::common::{parse_with, tool};
+use crate::plates::{Name, Sheet};
 use std::collections::{BTreeMap, BTreeSet};
 use strahl_render::{CompileOptions, RenderOptions, compile, render};
 use strahl_sdl::MemoryHost;

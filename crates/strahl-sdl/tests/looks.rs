@@ -1,10 +1,8 @@
 //! Looks: default textures, finishes, and the names of the include files, rendered by POV-Ray 3.7 with its own include files and
 //! by strahl with ours.
 
-mod common;
-
-use common::parse_with;
-use common::pictures::agree;
+use crate::common::parse_with;
+use crate::common::pictures::agree;
 use strahl_render::{CompileOptions, RenderOptions, compile, render};
 use strahl_sdl::MemoryHost;
 

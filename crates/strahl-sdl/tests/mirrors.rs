@@ -1,8 +1,6 @@
 //! The directions of reflection and transparency rays, and when they are cut: one pixel of each scene of `data/mirrors.tsv`, which has the
 //! values of POV-Ray 3.7.
 
-mod common;
-
 groups! {
     include_str!("data/mirrors.tsv");
     an_interpolated_normal_is_turned_to_the_viewer,

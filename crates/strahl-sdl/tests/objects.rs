@@ -1,8 +1,6 @@
 //! Objects: their syntax, their descriptions, and the messages about errors.
 
-mod common;
-
-use common::{debug, errors, parse_with};
+use crate::common::{debug, errors, parse_with};
 use std::sync::Arc;
 use strahl_geometry::{Isosurface, Primitive, Scratch, Shape, SubdivisionScheme};
 use strahl_math::{DVec2, DVec3, Interval, Ray};

@@ -1,8 +1,6 @@
 //! Expressions evaluated by POV-Ray 3.7 and by strahl.
 
-mod common;
-
-use common::{debug, tool};
+use crate::common::{debug, tool};
 use std::process::Command;
 
 const SETUP: &str = "

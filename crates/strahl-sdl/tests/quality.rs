@@ -1,9 +1,7 @@
 //! Reduced quality: one pixel of small scenes with the values that POV-Ray 3.7 gives it at each level, and pictures of both programs.
 
-mod common;
-
-use common::parse_with;
-use common::pictures::agree_at;
+use crate::common::parse_with;
+use crate::common::pictures::agree_at;
 use strahl_render::{CompileOptions, RayKind, RenderOptions, compile, explain, render};
 use strahl_sdl::MemoryHost;
 use strahl_shade::Quality;

@@ -1,8 +1,6 @@
 //! What `trace()` and `inside()` answer about surfaces and fractals, against values that are known without the program.
 
-mod common;
-
-use common::debug;
+use crate::common::debug;
 
 /// A ray, and where it meets the object with which normal; `None` where it passes.
 type Asked<'a> = (&'a str, &'a str, Option<(&'a str, &'a str)>);

@@ -1,7 +1,5 @@
 //! What random scenes (`cargo xtask differ`) have found: one pixel of each scene of `data/random.tsv`, which has the values of POV-Ray 3.7.
 
-mod common;
-
 groups! {
     include_str!("data/random.tsv");
     a_layer_vanishes_below_adc_bailout,

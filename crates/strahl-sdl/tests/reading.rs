@@ -1,9 +1,7 @@
 //! Accepted and rejected texts: each case was tried in POV-Ray 3.7. Where strahl is more lenient (extra separators, several names
 //! in a union), a comment says so.
 
-mod common;
-
-use common::{debug, errors, parse_with};
+use crate::common::{debug, errors, parse_with};
 use strahl_scene::{CsgOp, Object, ObjectKind, Scene};
 use strahl_sdl::{MemoryHost, Stream};
 

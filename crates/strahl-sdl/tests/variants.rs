@@ -1,7 +1,5 @@
 //! The scenes of the gallery, rewritten without changing their meaning: they must give the same scene.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use strahl_sdl::{MemoryHost, Options, Source, parse};
 
@@ -219,7 +217,7 @@ fn scenes_written_in_other_ways_are_the_same() {
                     .with_file(&name, bytes)
             })
     };
-    let results = common::each(&scenes, |path| {
+    let results = crate::common::each(&scenes, |path| {
         let text = std::fs::read_to_string(path).expect("UTF-8");
         let mut host = host();
         let Ok(expected) = description(&mut host, text.clone()) else {

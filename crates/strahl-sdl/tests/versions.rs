@@ -1,8 +1,6 @@
 //! The effects of language versions: the rows of `data/versions.tsv`, which docs/src/versions.md explains.
 
-mod common;
-
-use common::parse_with;
+use crate::common::parse_with;
 use std::collections::BTreeSet;
 use std::path::Path;
 use strahl_render::{CompileOptions, RenderOptions, Sampling, compile, render};

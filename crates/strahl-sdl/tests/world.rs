@@ -1,8 +1,6 @@
 //! Lights, cameras, fog and settings: their descriptions, and the messages about them.
 
-mod common;
-
-use common::{errors, parse_with};
+use crate::common::{errors, parse_with};
 use strahl_math::DVec3;
 use strahl_scene::{CsgOp, ObjectKind, Projection, Scene, WorkingSpace};
 use strahl_sdl::MemoryHost;

@@ -1,6 +1,6 @@
 //! What `bounded_by` hides, and from whom.
 
-use crate::SETTINGS;
+use super::SETTINGS;
 use crate::common::pictures::agree;
 
 const CAMERA: &str = "camera { location -6*z look_at 0 angle 40 } background { rgb <0, 0, 0.4> }

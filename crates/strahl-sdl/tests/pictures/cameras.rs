@@ -1,7 +1,7 @@
 //! Cameras.
 
+use super::{LIGHT, SETTINGS, THINGS};
 use crate::common::pictures::{agree, agree_within};
-use crate::{LIGHT, SETTINGS, THINGS};
 
 fn seen(camera: &str) -> String {
     format!("{SETTINGS}camera {{ {camera} }}\n{LIGHT}{THINGS}")

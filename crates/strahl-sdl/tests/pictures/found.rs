@@ -1,6 +1,6 @@
 //! What random scenes (`cargo xtask differ`) have shown.
 
-use crate::SETTINGS;
+use super::SETTINGS;
 use crate::common::pictures::agree;
 
 const CAMERA: &str = "camera { location <0, 2, -5> look_at 0 }\n";

@@ -1,7 +1,7 @@
 //! Lights, light groups and shadows.
 
+use super::{CAMERA, LIGHT, SETTINGS, lit};
 use crate::common::pictures::agree;
-use crate::{CAMERA, LIGHT, SETTINGS, lit};
 
 #[test]
 fn lights_shine_as_povrays() {

@@ -1,7 +1,7 @@
 //! Background, fog, rainbows and global settings.
 
+use super::{CAMERA, LIGHT, SETTINGS, THINGS, lit};
 use crate::common::pictures::agree;
-use crate::{CAMERA, LIGHT, SETTINGS, THINGS, lit};
 
 #[test]
 fn hidden_things_stay_hidden_behind_glass() {

@@ -1,7 +1,7 @@
 //! Pictures in textures: palettes, and the meaning of their codes.
 
 use super::color_at;
-use super::common::parse_with;
+use crate::common::parse_with;
 use strahl_math::DVec3;
 use strahl_sdl::MemoryHost;
 use strahl_shade::Color;

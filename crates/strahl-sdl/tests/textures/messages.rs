@@ -1,7 +1,7 @@
 //! The messages about unsupported features and errors.
 
-use super::common::{errors, parse_with};
 use super::{PICTURE, scene};
+use crate::common::{errors, parse_with};
 use strahl_sdl::MemoryHost;
 
 #[test]

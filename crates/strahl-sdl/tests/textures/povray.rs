@@ -1,7 +1,7 @@
 //! Pigments compared with POV-Ray's.
 
-use super::common::tool;
 use super::{PICTURE, color_at, textures};
+use crate::common::tool;
 use std::process::Command;
 use strahl_math::DVec3;
 

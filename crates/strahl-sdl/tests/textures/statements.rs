@@ -1,7 +1,7 @@
 //! Pigments, normals, finishes, textures and interiors as the scene describes them.
 
-use super::common::{debug, errors};
 use super::{color_at, plain, scene, texture, textures};
+use crate::common::{debug, errors};
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_scene::ObjectKind;

@@ -1,14 +1,12 @@
 //! The same objects, rendered by POV-Ray 3.7 and by strahl: more than 99 % of the pixels must be equal.
 //!
-//! `STRAHL_SILHOUETTE="box" cargo test -p strahl-sdl --test silhouettes` runs one of them and shows the pixels that differ.
+//! `STRAHL_SILHOUETTE="box" cargo test -p strahl-sdl --test suite silhouettes` runs one of them and shows the pixels that differ.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod scenes;
 
-use common::pictures::{Pixels, SIZE, pair};
-use common::{each, tool};
-use scenes::{SCENES, SETUP};
+use self::scenes::{SCENES, SETUP};
+use crate::common::pictures::{Pixels, SIZE, pair};
+use crate::common::{each, tool};
 use std::path::Path;
 use strahl_shade::srgb;
 

@@ -1,13 +1,11 @@
 //! Textures: their syntax, their descriptions, the messages about errors, and pigments compared with POV-Ray's.
 
 mod bitmaps;
-#[path = "../common/mod.rs"]
-mod common;
 mod messages;
 mod povray;
 mod statements;
 
-use common::parse_with;
+use crate::common::parse_with;
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_scene::Scene;

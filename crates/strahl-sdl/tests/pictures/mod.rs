@@ -4,8 +4,6 @@
 
 mod bounds;
 mod cameras;
-#[path = "../common/mod.rs"]
-mod common;
 mod found;
 mod lights;
 mod reading;
