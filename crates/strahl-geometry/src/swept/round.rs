@@ -2,7 +2,7 @@ use super::curve::Piece;
 use crate::{Crossing, PrimHit, Side, SurfaceId};
 use std::ops::ControlFlow;
 use strahl_math::error::gamma;
-use strahl_math::roots::{Bernstein, RootCount, quadratic};
+use strahl_math::roots::{Bernstein, quadratic};
 use strahl_math::{Aabb, DVec3, DVec4, Ray};
 
 /// A piece of a curve of spheres: centre and radius, of degree 1 or 3.
@@ -45,9 +45,12 @@ impl Line {
     }
 }
 
+/// Both ends, six and ten roots, and some for double roots, which may be found in several parts.
+const MOST_MARKS: usize = 40;
+
 /// Parameters of a curve at which the state may change: its ends, and roots.
 struct Marks {
-    list: [f64; 20],
+    list: [f64; MOST_MARKS],
     count: usize,
 }
 
@@ -136,7 +139,7 @@ impl Segment {
     /// Lists the spans of the line within the piece, each as an entry and an exit.
     pub(super) fn spans(&self, line: &Line, facet: u32, out: &mut Vec<Crossing>) {
         let mut marks = Marks {
-            list: [0.0; 20],
+            list: [0.0; MOST_MARKS],
             count: 0,
         };
         marks.push(0.0);
@@ -303,10 +306,9 @@ fn mark_cubic(points: &[DVec4; 4], line: &Line, marks: &mut Marks) -> bool {
     let turning: [f64; 11] = std::array::from_fn(|k| 4.0 * left[k] - right[k]);
     let scale = size * size * size * size;
     let polynomial = Bernstein::new(turning, gamma(64) * scale, 0.0, 1.0);
+    // Rays across the curve have double roots, where both points of the line turn at once. A mark too many does no harm: it stands for a sphere.
     let _ = polynomial.isolate(&mut |part| {
-        if part.count != RootCount::Even {
-            marks.push(polished(&along, &square, part.root()));
-        }
+        marks.push(polished(&along, &square, part.root()));
         ControlFlow::Continue(())
     });
     true

@@ -311,6 +311,57 @@ mod tests {
         }
     }
 
+    /// The first point of any sphere, of many along the curve.
+    fn first_of_spheres(sweep: &SphereSweep, ray: &Ray) -> Option<f64> {
+        let mut first = f64::INFINITY;
+        for segment in &sweep.segments {
+            for k in 0..=4000 {
+                let sphere = segment.at(f64::from(k) / 4000.0);
+                let aside = sphere.truncate() - ray.origin;
+                let along = aside.dot(ray.direction);
+                let square = sphere.w * sphere.w - (aside.length_squared() - along * along);
+                if square >= 0.0 && along - square.sqrt() < first {
+                    first = along - square.sqrt();
+                }
+            }
+        }
+        first.is_finite().then_some(first)
+    }
+
+    #[test]
+    fn rays_across_a_flat_curve_meet_the_nearest_sphere() {
+        let flat = WORM.map(|[x, y, _, r]| [x, y, 0.0, r]);
+        let scratch = &mut Scratch::default();
+        for spline in [
+            SweepSpline::Cubic,
+            SweepSpline::BSpline,
+            SweepSpline::Linear,
+        ] {
+            let sweep = sweep(spline, &flat);
+            let mut found = 0;
+            for k in 0..1600 {
+                let (x, y) = (
+                    f64::from(k % 40) * 0.07 - 1.4,
+                    f64::from(k / 40) * 0.04 - 0.8,
+                );
+                // Exactly across, nearly, and not.
+                let tilt = [0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-2][k as usize % 6];
+                let direction = DVec3::new(tilt, 0.5 * tilt, 1.0).normalize();
+                let ray = Ray::new(DVec3::new(x, y, -3.0), direction);
+                let hit = sweep.closest_hit(&ray, Interval::FORWARD, None, scratch);
+                let Some(t) = first_of_spheres(&sweep, &ray) else {
+                    continue;
+                };
+                // The best of the samples is a little behind, much where the ray touches.
+                let nearest = hit.map_or(f64::INFINITY, |hit| hit.t);
+                assert!(nearest < t + 1e-9, "{spline:?} {ray:?}: {nearest} {t}");
+                assert!(nearest > t - 2e-3, "{spline:?} {ray:?}: {nearest} {t}");
+                found += 1;
+            }
+            assert!(found > 200, "{found}");
+        }
+    }
+
     #[test]
     fn rays_go_through_all_parts_of_a_bent_body() {
         let arch = sweep(
