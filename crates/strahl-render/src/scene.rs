@@ -88,6 +88,8 @@ pub struct RenderScene {
     pub(crate) masks: Vec<Option<InstanceUse>>,
     pub(crate) ambient: Color,
     pub(crate) background: Background,
+    /// The same for pictures without an alpha channel.
+    pub(crate) opaque_background: Background,
     /// How much of the background the alpha channel leaves out of the picture.
     pub(crate) background_alpha: BackgroundAlpha,
     pub(crate) fogs: Vec<Fog>,

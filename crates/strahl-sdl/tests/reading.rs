@@ -549,3 +549,49 @@ fn heights_of_a_sor_grow() {
     assert_eq!(errors.len(), 1, "{errors:?}");
     assert!(errors[0].contains("must grow"), "{errors:?}");
 }
+
+const DOTS: &[u8] = b"P6\n2 2\n255\n\xff\0\0\x0a\x0b\x0c\x20\x30\x40\x80\x80\x80";
+
+/// Names of files without an ending, and the directions of pictures that POV-Ray 1.0 had.
+#[test]
+fn endings_of_files_are_added() {
+    let read = |text: &str| {
+        let mut host = MemoryHost::new()
+            .with_file("dot.ppm", DOTS)
+            .with_file("mine.inc", b"#declare Mine = sphere { 0, 1 }")
+            .with_file("plain", b"#declare Plain = sphere { 0, 1 }");
+        let parsed = parse_with(&mut host, &format!("#version 3.7; {text}"));
+        let messages = parsed.diagnostics.iter().map(ToString::to_string);
+        (parsed.scene.is_some(), messages.collect::<Vec<_>>())
+    };
+    for text in [
+        "#include \"mine\" object { Mine }",
+        "#include \"plain\" object { Plain }",
+        "#include \"colors\" sphere { 0, 1 pigment { Red } }",
+        "sphere { 0, 1 pigment { image_map { ppm \"dot\" } } }",
+        "sphere { 0, 1 pigment { image_map { <1 -1 0> ppm \"dot.ppm\" once } } }",
+        "height_field { ppm \"dot\" }",
+    ] {
+        let (done, messages) = read(text);
+        assert!(done && messages.is_empty(), "{text}\n{messages:?}");
+    }
+    let (_, messages) =
+        read("sphere { 0, 1 pigment { image_map { <1, 0, -1> ppm \"dot.ppm\" } } }");
+    assert!(messages[0].contains("directions"), "{messages:?}");
+    let (done, messages) = read("#include \"nothing\"");
+    assert!(!done && messages[0].contains("`nothing`"), "{messages:?}");
+}
+
+/// The first version of the language counts water levels in 256ths.
+#[test]
+fn old_water_levels_are_whole_numbers() {
+    let shape = |version: &str, level: &str| {
+        let mut host = MemoryHost::new().with_file("dot.ppm", DOTS);
+        let text =
+            format!("#version {version}; height_field {{ ppm \"dot.ppm\" water_level {level} }}");
+        let scene = parse_with(&mut host, &text).scene.expect("a scene");
+        format!("{:?}", scene.objects.0[0].kind)
+    };
+    assert_eq!(shape("1.0", "64"), shape("3.1", "0.25"));
+    assert_eq!(shape("2.0", "0.25"), shape("3.7", "0.25"));
+}

@@ -39,6 +39,9 @@ impl Default for Interior {
 }
 
 impl Interior {
+    /// The exponent of the light behind an object with `caustics 1` (measured). In a `finish` POV-Ray takes the number for the exponent.
+    pub const CAUSTICS_EXPONENT: f64 = 45.0;
+
     /// Whether colours are refracted by different angles.
     #[inline]
     pub fn disperses(&self) -> bool {
@@ -57,7 +60,7 @@ impl Interior {
     /// between the perturbed normal and the light's direction (as measured).
     pub fn gathered(caustics: f64, cos: f64) -> f64 {
         if caustics > 0.0 {
-            1.0 + det::pow(cos.abs(), 45.0 * caustics)
+            1.0 + det::pow(cos.abs(), Self::CAUSTICS_EXPONENT * caustics)
         } else {
             1.0
         }

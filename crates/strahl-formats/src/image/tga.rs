@@ -1,4 +1,4 @@
-//! Truevision TGA of 24 bit: 8 bit sRGB, compressed by runs.
+//! Truevision TGA of 24 bit: 8 bit sRGB, not compressed: some programs can't read runs that go on in the next row, as the encoder writes them.
 
 use std::io::{self, Write};
 
@@ -18,6 +18,7 @@ pub(super) fn encode(
     push_codes(picture.rgb, BitDepth::Eight, &mut codes);
     let window = picture.window;
     TgaEncoder::new(writer)
+        .disable_rle()
         .encode(&codes, window.width, window.height, ExtendedColorType::Rgb8)
         .map_err(io_error)
 }

@@ -116,6 +116,14 @@ impl Prepared {
             true => (scene.fogs.clone(), scene.rainbows.clone()),
             false => (vec![], vec![]),
         };
+        let background_alpha = match scene.background {
+            Some(_) => scene.background_alpha,
+            None => BackgroundAlpha::LeftOut,
+        };
+        let background = match &scene.background {
+            Some(background) => background.of_quality(quality),
+            None => view::background(scene, &camera),
+        };
         Ok(Self {
             groups,
             objects: flat.objects.completed(),
@@ -125,14 +133,8 @@ impl Prepared {
             light_sets,
             masks,
             ambient,
-            background_alpha: match scene.background {
-                Some(_) => scene.background_alpha,
-                None => BackgroundAlpha::LeftOut,
-            },
-            background: match &scene.background {
-                Some(background) => background.of_quality(quality),
-                None => view::background(scene, &camera),
-            },
+            background_alpha,
+            background,
             fogs,
             rainbows,
             camera,
@@ -192,6 +194,7 @@ impl Prepared {
             light_sets: self.light_sets,
             masks: self.masks,
             ambient: self.ambient,
+            opaque_background: self.background.opaque(self.background_alpha),
             background: self.background,
             background_alpha: self.background_alpha,
             fogs: self.fogs,

@@ -14,7 +14,7 @@ pub(super) fn uniform_background(scene: &RenderScene) -> Option<Color> {
     if scene.has_air() || scene.absorbs_around_the_eye() {
         return None;
     }
-    let color = match &scene.background {
+    let color = match &scene.opaque_background {
         Background::Solid(color) => *color,
         Background::Sky(sky) => sky.same_everywhere()?,
         Background::Gradient { .. } => return None,
@@ -28,8 +28,8 @@ impl TreeTracer<'_> {
         let scene = self.intersector.scene;
         let coverage = Coverage::new(scene.background.clone(), scene.background_alpha);
         // What is the same along all rays can be asked along any.
-        let (_, clear) = coverage.beyond(DVec3::Y);
-        let without = |seen: Sample| clear.taken_from(seen.color);
+        let (seen, clear) = coverage.beyond(DVec3::Y);
+        let without = |_| clear.taken_from(seen + Color::BLACK);
         self.beyond = self.beyond.map(without);
         self.coverage = Some(coverage);
         self
@@ -66,7 +66,7 @@ impl TreeTracer<'_> {
                 let (seen, clear) = coverage.beyond(direction);
                 (seen, Some(clear))
             }
-            None => (scene.background.along(direction), None),
+            None => (scene.opaque_background.along(direction), None),
         };
         let mut color = seen + Color::BLACK;
         color *= keeps;

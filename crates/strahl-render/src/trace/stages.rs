@@ -212,7 +212,7 @@ impl<'s> TreeTracer<'s> {
                     let direction = branch.ray.direction;
                     *local = match &mut self.coverage {
                         Some(coverage) => coverage.enter_miss(direction),
-                        None => scene.background.along(direction),
+                        None => scene.opaque_background.along(direction),
                     };
                 }
             }

@@ -9,10 +9,7 @@ pub(super) fn background(p: &mut Parser<'_>) -> PResult<()> {
     let color = Color::new(r, g, b);
     // Old backgrounds are see-through, even if the scene ends as a newer one (measured).
     p.scene.background_alpha = match p.before_3_7() {
-        true => BackgroundAlpha::Seen {
-            filter: 0.0,
-            transmit: 1.0,
-        },
+        true => BackgroundAlpha::Clear,
         false => BackgroundAlpha::Seen { filter, transmit },
     };
     p.scene.background = Some(match p.scene.background.take() {

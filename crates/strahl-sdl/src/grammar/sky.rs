@@ -13,10 +13,7 @@ pub(super) fn sky_statement(p: &mut Parser<'_>) -> PResult<()> {
         Some(Background::Sky(before)) => sky.behind = before.behind,
         // Nothing is behind the sky.
         _ => {
-            p.scene.background_alpha = BackgroundAlpha::Seen {
-                filter: 0.0,
-                transmit: 1.0,
-            };
+            p.scene.background_alpha = BackgroundAlpha::Clear;
         }
     }
     p.scene.background = Some(Background::Sky(Arc::new(sky)));

@@ -359,6 +359,9 @@ impl<'h> Parser<'h> {
             return Ok(Source::new(format!("<built in>/{name}"), text));
         }
         match self.host.load_installed(name) {
+            Err(HostError::NotFound { .. }) if text && !has_ending(name) => self
+                .find_file(&format!("{name}.inc"), from, true)
+                .map_err(|_| not_found),
             Err(HostError::NotFound { searched, .. }) => Err(not_found.also(searched)),
             other => other,
         }
@@ -477,4 +480,10 @@ impl<'h> Parser<'h> {
         }
         self.fail_with(from, diagnostic)
     }
+}
+
+/// Whether the name of a file has an ending, as in `name.png`.
+pub(crate) fn has_ending(name: &str) -> bool {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    last.contains('.')
 }

@@ -18,7 +18,7 @@ pub(crate) use blocks::{Block, BlockKind, Loop};
 use call::Argument;
 pub use call::Macro;
 pub(crate) use call::Parameter;
-pub(crate) use frames::{Data, Entry};
+pub(crate) use frames::{Data, Entry, has_ending};
 pub use report::{Failed, PResult};
 pub(crate) use scope::{Scopes, Step, Target};
 

@@ -231,3 +231,46 @@ fn versions_before_3_5_have_their_noise_and_layers() {
     }
     agree(0.01, &scenes);
 }
+
+/// Without an alpha channel the transmit of the background shows black, but its filter does not.
+#[test]
+fn backgrounds_that_transmit_are_dark() {
+    let things = "sphere { -x, 0.5 pigment { rgb 0 } finish { ambient 0 diffuse 0 reflection 1 } }
+        box { <0.2, -0.5, 0>, <1.2, 0.5, 1> pigment { rgbt <1, 1, 1, 0.5> } finish { ambient 0 diffuse 0 } hollow }";
+    let mut scenes = vec![];
+    for color in [
+        "rgbt <1, 0.5, 0.2, 0.4>",
+        "rgb 1 transmit 1",
+        "rgbf <1, 0.5, 0.2, 0.4>",
+    ] {
+        for sky in ["", "sky_sphere { pigment { rgbt <0.2, 0.4, 0.8, 0.5> } }"] {
+            for version in ["3.6", "3.7"] {
+                let text = format!(
+                    "#version {version}; global_settings {{ assumed_gamma 1 }} {CAMERA} background {{ {color} }} {sky} {things}"
+                );
+                scenes.push((version, text));
+            }
+        }
+    }
+    let late = format!(
+        "#version 3.1; global_settings {{ assumed_gamma 1 }} {CAMERA} background {{ rgbt <1, 0.5, 0.2, 0.4> }} {things} #version 3.7;"
+    );
+    scenes.push(("late", late));
+    agree(0.01, &scenes);
+}
+
+/// In a finish `caustics` is the exponent, in an interior a 45th of it.
+#[test]
+fn caustics_of_finishes_are_exponents() {
+    let scene = |finish: &str, interior: &str| {
+        format!(
+            "sphere {{ 0, 1.2 pigment {{ rgbf 0.9 }} finish {{ {finish} }} interior {{ ior 1.3 {interior} }} }}
+             plane {{ y, -1.5 pigment {{ rgb 0.8 }} }} light_source {{ <5, 9, -5>, 1 }}"
+        )
+    };
+    scenes(&[
+        ("finish", &scene("caustics 1", "")),
+        ("interior", &scene("", "caustics 1")),
+        ("both", &scene("caustics 20", "caustics 1")),
+    ]);
+}

@@ -13,7 +13,8 @@ use strahl_math::{DVec3, Transform, det};
 use strahl_scene::{Camera, Projection, Span};
 use strahl_shade::normal::PovNormal;
 
-/// The version from which on `angle` and `direction` have an effect on orthographic cameras, and each camera starts from the default.
+/// The version from which on `angle` and `direction` have an effect on orthographic cameras, each camera starts from the default, and the order of
+/// its items does not matter.
 const CAMERAS_SINCE: f64 = 3.5;
 
 /// `camera { ... }` as a statement: the last one counts.
@@ -45,7 +46,7 @@ pub(crate) fn default_camera() -> Camera {
 }
 
 /// A camera being read. The order of items does not matter: the view is computed at the closing brace, first the angle, then
-/// `look_at`, then the transformations (measured with POV-Ray 3.7).
+/// `look_at`, then the transformations. Before version 3.5 each item acts on the vectors as they are where it stands (both measured with POV-Ray 3.7).
 struct Draft {
     location: DVec3,
     direction: DVec3,
@@ -72,6 +73,9 @@ struct Draft {
     begun: bool,
     /// Whether `right` and `up` are the size of the view, as in orthographic cameras before version 3.5.
     fixed: bool,
+    /// Whether each item acts at once, as before version 3.5.
+    in_order: bool,
+    /// Of a camera whose items act at once it moves only the focal point.
     transform: Transform,
 }
 
@@ -94,6 +98,7 @@ impl Draft {
             named: false,
             begun: false,
             fixed: false,
+            in_order: false,
             transform: Transform::IDENTITY,
         }
     }
@@ -141,7 +146,6 @@ impl Draft {
     /// items it sets them to the view of the perspective camera described so far, at the distance of `look_at`.
     fn fix_size(&mut self) {
         if self.begun && !self.fixed {
-            self.apply_angle();
             let distance = (self.look_at.unwrap_or(DVec3::Z) - self.location).length();
             let scale = distance / self.direction.length();
             self.right *= scale;
@@ -150,16 +154,31 @@ impl Draft {
         self.fixed = true;
     }
 
+    /// Half of the width of the view at a distance of 1, if there is an angle.
+    fn slope(&self) -> Option<f64> {
+        self.angle
+            .map(|(angle, _)| det::tan(angle.to_radians() * 0.5))
+    }
+
+    /// Makes the direction so long that the width of the picture fits the slope.
+    fn fit_direction(&mut self, slope: f64) {
+        let distance = self.right.length() * 0.5 / slope;
+        self.direction = self.direction.normalize_or_zero() * distance;
+    }
+
+    /// Moves the view.
+    fn apply(&mut self, t: &Transform) {
+        self.location = t.point_to_world(self.location);
+        self.direction = t.vector_to_world(self.direction);
+        self.right = t.vector_to_world(self.right);
+        self.up = t.vector_to_world(self.up);
+    }
+
     /// Scales the vectors to fit the angle.
     fn apply_angle(&mut self) {
-        let slope = self
-            .angle
-            .map(|(angle, _)| det::tan(angle.to_radians() * 0.5));
+        let slope = self.slope();
         match (&self.projection, slope) {
-            (Projection::Perspective, Some(slope)) => {
-                let distance = self.right.length() * 0.5 / slope;
-                self.direction = self.direction.normalize_or_zero() * distance;
-            }
+            (Projection::Perspective, Some(slope)) => self.fit_direction(slope),
             (Projection::Orthographic, _) => {
                 // An orthographic camera shows what a perspective camera would show at the distance of `look_at`.
                 let distance = (self.look_at.unwrap_or(DVec3::Z) - self.location).length();
@@ -222,6 +241,7 @@ impl Parser<'_> {
 
     fn camera_on(&mut self, mut draft: Draft) -> PResult<Camera> {
         let place = self.place();
+        draft.in_order = self.version < CAMERAS_SINCE;
         self.braces(|p| {
             p.items("`camera`", |p, token| {
                 let named = p.accept_thing(|thing| match thing {
@@ -229,7 +249,11 @@ impl Parser<'_> {
                     _ => None,
                 })?;
                 if let Some(camera) = named {
-                    draft = Draft::of(&camera);
+                    let in_order = draft.in_order;
+                    draft = Draft {
+                        in_order,
+                        ..Draft::of(&camera)
+                    };
                     return Ok(());
                 }
                 p.camera_item(&mut draft, token)?;
@@ -243,6 +267,9 @@ impl Parser<'_> {
     fn camera_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
         if let Some(next) = self.transformation(token)? {
             draft.transform = draft.transform.then(&next);
+            if draft.in_order {
+                draft.apply(&next);
+            }
             return Ok(());
         }
         let Some(word) = token.word() else {
@@ -279,10 +306,17 @@ impl Parser<'_> {
                     None
                 };
                 draft.angle = Some((horizontal, vertical));
+                if let Some(slope) = draft.slope().filter(|_| draft.in_order) {
+                    draft.fit_direction(slope);
+                }
             }
             Word::LookAt => {
                 self.take(token)?;
-                draft.look_at = Some(self.vector3()?);
+                let (place, point) = (self.place_of(token), self.vector3()?);
+                draft.look_at = Some(point);
+                if draft.in_order {
+                    self.turn_camera(draft, point, place);
+                }
             }
             Word::Location => {
                 self.take(token)?;
@@ -309,6 +343,16 @@ impl Parser<'_> {
             _ => return self.camera_effect(draft, token, word),
         }
         Ok(())
+    }
+
+    /// Carries out `look_at`.
+    fn turn_camera(&mut self, draft: &mut Draft, point: DVec3, place: Place) {
+        if !draft.turn_to(point) {
+            self.warn(
+                place,
+                "`look_at` has no effect: the point is where the camera is",
+            );
+        }
     }
 
     /// The type after `cylinder`, 1 to 4.
@@ -343,7 +387,7 @@ impl Parser<'_> {
             return Err(self.fail(place, message));
         }
         draft.fill_angle();
-        if !draft.fixed && (!draft.named || draft.angle.is_some()) {
+        if !draft.in_order && (!draft.named || draft.angle.is_some()) {
             draft.apply_angle();
         }
         if let Some(mesh) = draft.mesh.take() {
@@ -351,21 +395,19 @@ impl Parser<'_> {
             let camera = mesh.finish(draft.location.z, draft.direction.z < 0.0, draft.smooth);
             draft.projection = Projection::Mesh(Arc::new(camera));
         }
-        if let Some(point) = draft.look_at
-            && !draft.turn_to(point)
-        {
-            self.warn(
-                place,
-                "`look_at` has no effect: the point is where the camera is",
-            );
+        if !draft.in_order {
+            if let Some(point) = draft.look_at {
+                self.turn_camera(&mut draft, point, place);
+            }
+            let all = draft.transform;
+            draft.apply(&all);
         }
-        let t = &draft.transform;
         let camera = Camera {
-            eye: t.point_to_world(draft.location),
-            direction: t.vector_to_world(draft.direction),
-            right: t.vector_to_world(draft.right) * 0.5,
-            up: t.vector_to_world(draft.up) * 0.5,
-            lens: draft.lens.finish(t),
+            eye: draft.location,
+            direction: draft.direction,
+            right: draft.right * 0.5,
+            up: draft.up * 0.5,
+            lens: draft.lens.finish(&draft.transform),
             normal: draft.normal,
             projection: draft.projection,
             aspect: Some(1.0),

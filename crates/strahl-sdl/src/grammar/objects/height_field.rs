@@ -17,6 +17,10 @@ pub(super) fn height_field(p: &mut Parser<'_>) -> PResult<Entity> {
         loop {
             if p.accept_word(Word::WaterLevel)? {
                 water = p.float()?;
+                // In the first version of the language it counts 256ths (measured).
+                if p.state.global.versioned && p.version < 2.0 {
+                    water /= 256.0;
+                }
             } else if p.accept_word(Word::Smooth)? {
                 smooth = p.switched()?;
             } else {
@@ -36,9 +40,8 @@ pub(super) fn height_field(p: &mut Parser<'_>) -> PResult<Entity> {
 impl Parser<'_> {
     /// `[type] "file" [gamma g] [premultiplied on]`
     fn height_file(&mut self) -> PResult<Heights> {
-        let kind = self.picture_type()?;
+        let (kind, name) = self.picture_name()?;
         let place = self.place();
-        let name = self.file_name()?;
         let file = self.read_file(&name, place)?;
         let mut heights = match decode_heights(&file.bytes, &name) {
             Ok(heights) => heights,

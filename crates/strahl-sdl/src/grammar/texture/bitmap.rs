@@ -1,7 +1,8 @@
 //! Pictures in textures: `image_map`, `image_pattern`, `bump_map` and `material_map`.
 
+use crate::HostError;
 use crate::keywords::Word;
-use crate::parser::{PResult, Parser, Place};
+use crate::parser::{PResult, Parser, Place, has_ending};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
 use strahl_formats::image::{
@@ -117,8 +118,7 @@ impl Parser<'_> {
 
     /// `[type] "file"`: the code of each texel, as red. For pictures with a palette it is the index, for others red or grey.
     fn codes_file(&mut self) -> PResult<Option<Picture>> {
-        self.picture_type()?;
-        let name = self.file_name()?;
+        let (_, name) = self.picture_name()?;
         let place = self.place();
         let file = self.read_file(&name, place)?;
         let codes = match decode_heights(&file.bytes, &name) {
@@ -167,9 +167,43 @@ impl Parser<'_> {
         })
     }
 
-    /// The type of a picture file, if one follows.
-    pub(in crate::grammar) fn picture_type(&mut self) -> PResult<Option<Word>> {
-        let token = self.peek()?;
+    /// `[type] "file"`. As in POV-Ray (measured) the ending of the type is added to a name without one, unless there is a file of that name.
+    pub(in crate::grammar) fn picture_name(&mut self) -> PResult<(Option<Word>, String)> {
+        let kind = self.picture_type()?;
+        let name = self.file_name()?;
+        let place = self.place();
+        let (Some(word), false) = (kind, has_ending(&name)) else {
+            return Ok((kind, name));
+        };
+        match self.look_for_file(&name, place)? {
+            Err(HostError::NotFound { .. }) => {
+                let ending = if word == Word::Jpeg {
+                    "jpg"
+                } else {
+                    word.text()
+                };
+                Ok((kind, format!("{name}.{ending}")))
+            }
+            _ => Ok((kind, name)),
+        }
+    }
+
+    /// The type of a picture file, if one follows. Up to POV-Ray 1.0 the directions of the picture's sides stood in front of it.
+    fn picture_type(&mut self) -> PResult<Option<Word>> {
+        let mut token = self.peek()?;
+        if token.kind == Kind::Less {
+            let place = self.place_of(token);
+            // Newer versions of the language read `1 -1` as 0.
+            let sides = self.vector3()?;
+            if sides != DVec3::new(1.0, -1.0, 0.0) && sides != DVec3::ZERO {
+                self.warn_hint(
+                    place,
+                    "the directions of the picture's sides are ignored",
+                    "write `rotate` behind the picture",
+                );
+            }
+            token = self.peek()?;
+        }
         let kind = token.word().filter(|word| {
             matches!(
                 word,
@@ -196,8 +230,7 @@ impl Parser<'_> {
 
     /// `[type] "file" [gamma g] [premultiplied on]`
     fn picture_file(&mut self, purpose: Purpose) -> PResult<Option<Picture>> {
-        let kind = self.picture_type()?;
-        let name = self.file_name()?;
+        let (kind, name) = self.picture_name()?;
         let place = self.place();
         let (mut gamma, mut premultiplied) = (None, false);
         loop {

@@ -78,7 +78,10 @@ impl Texture {
         }
         let mut interior = self.interior.as_deref().copied().unwrap_or_default();
         interior.ior = finish.ior.unwrap_or(interior.ior);
-        interior.caustics = finish.caustics.unwrap_or(interior.caustics);
+        if let Some(exponent) = finish.caustics {
+            // There it is the exponent itself (measured).
+            interior.caustics = exponent / Interior::CAUSTICS_EXPONENT;
+        }
         Some(Arc::new(interior))
     }
 
