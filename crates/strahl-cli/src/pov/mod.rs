@@ -295,6 +295,11 @@ mod tests {
         is("a.pov +Ob.c +FH", "--output b.c.hdr a.pov");
         is("dir/a.pov +Oout/", "--output out/a.png dir/a.pov");
         is("a.pov +Ob.tga +FT", "--output b.tga a.pov");
+        is("+Iscenes/a.pov", "--output scenes/ scenes/a.pov");
+        is("/tmp/a.pov +W8 +H6", "--size 8x6 --output /tmp/ /tmp/a.pov");
+        is("+Iscenes/a.pov +FP", "--output scenes/a.ppm scenes/a.pov");
+        is("+Iscenes/a.pov +Ob", "--output b.png scenes/a.pov");
+        is("scenes/a.pov", "scenes/a.pov");
         is("a.pov +FB", "--output a.bmp a.pov");
         is(
             "a.pov +FJ Compression=90",

@@ -314,6 +314,20 @@ impl Settings {
         }
     }
 
+    /// Where the picture goes if no setting names it: beside the scene, as in POV-Ray. `None` for strahl's default, the current folder.
+    fn beside_the_scene(&self) -> Option<String> {
+        let scene = Path::new(&self.input);
+        let stem = scene.file_stem().filter(|_| self.input != "-")?;
+        let folder = scene.parent().unwrap_or(Path::new(""));
+        let path = match self.file_type.map(ending) {
+            Some(ending) => folder.join(format!("{}.{ending}", stem.to_string_lossy())),
+            None if folder.as_os_str().is_empty() => return None,
+            // Only the folder, with a separator at its end: strahl's own options may still decide about the file's name.
+            None => folder.join(""),
+        };
+        Some(path.to_string_lossy().into_owned())
+    }
+
     /// The name of the picture with the extension of its type; `None` for strahl's default.
     fn output(&self) -> Result<Option<String>, String> {
         if self.output.as_deref() == Some("-") {
@@ -323,8 +337,7 @@ impl Settings {
         let scene = Path::new(&self.input).file_stem().unwrap_or_default();
         let scene = scene.to_string_lossy().into_owned();
         let Some(output) = &self.output else {
-            let named = self.file_type.is_some() && !scene.is_empty() && scene != "-";
-            return Ok(named.then(|| format!("{scene}.{ending}")));
+            return Ok(self.beside_the_scene());
         };
         if output.ends_with('/') || Path::new(output).is_dir() {
             let file = Path::new(output).join(format!("{scene}.{ending}"));

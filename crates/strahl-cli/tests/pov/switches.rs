@@ -1,7 +1,7 @@
 //! POV-Ray's switches and .ini files.
 
 use super::common::{stderr, strahl};
-use super::{fails, folder, size, succeeds, write};
+use super::{fails, folder, pictures, size, succeeds, write};
 
 #[test]
 fn povray_switches_render() {
@@ -135,6 +135,34 @@ fn pictures_of_povs_types_are_written() {
     assert!(f.join("out/scene.jpg").exists());
     let help = ["scene.pov", "-o", "a", "--picture-format", "gif"];
     fails(f, &help, 2, &["png", "jpg", "tga"]);
+}
+
+#[test]
+fn pictures_lie_beside_their_scenes() {
+    let folder = folder();
+    let f = folder.path();
+    std::fs::create_dir(f.join("scenes")).expect("a folder");
+    std::fs::rename(f.join("scene.pov"), f.join("scenes/a.pov")).expect("renamed");
+    write(f, "run.ini", "Input_File_Name=scenes/a.pov\n+W4 +H3\n");
+    let absolute = format!("+I{}", f.join("scenes/a.pov").display());
+    for words in [
+        &["+Iscenes/a.pov", "+W4", "+H3"][..],
+        &[&absolute, "+W4", "+H3"],
+        &["run.ini"],
+    ] {
+        succeeds(f, words);
+        assert_eq!(size(f, "scenes/a.png"), (4, 3), "{words:?}");
+        std::fs::remove_file(f.join("scenes/a.png")).expect("it was there");
+    }
+    succeeds(f, &["run.ini", "+KFF2"]);
+    assert_eq!(pictures(&f.join("scenes")), ["a1.png", "a2.png"]);
+    // strahl's own options decide about the rest of the name.
+    succeeds(f, &["run.ini", "--picture-format", "jpg"]);
+    assert!(f.join("scenes/a.jpg").exists());
+    assert!(pictures(f).is_empty());
+    succeeds(f, &["run.ini", "+O./"]);
+    succeeds(f, &["run.ini", "-o", "b.png"]);
+    assert_eq!(pictures(f), ["a.png", "b.png"]);
 }
 
 #[test]
