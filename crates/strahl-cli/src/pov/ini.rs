@@ -1,4 +1,4 @@
-//! POV-Ray's .ini files: `Key=Value` lines, lines of switches, `[sections]`, and comments after `;`.
+//! POV-Ray's .ini files: `Key=Value` lines, lines of switches, `[sections]`, and comments after `;` or `#`.
 
 use super::settings::Settings;
 use super::switches;
@@ -78,13 +78,13 @@ fn apply_line(line: &str, settings: &mut Settings) -> Result<(), String> {
     settings.set(key.trim(), unquoted(value.trim()))
 }
 
-/// The line before a semicolon outside of quotation marks.
+/// The line before a semicolon or `#` outside of quotation marks.
 fn without_comment(line: &str) -> &str {
     let mut quoted = false;
     for (at, c) in line.char_indices() {
         match c {
             '"' => quoted = !quoted,
-            ';' if !quoted => return &line[..at],
+            ';' | '#' if !quoted => return &line[..at],
             _ => {}
         }
     }
@@ -116,8 +116,8 @@ mod tests {
     use super::*;
     use crate::pov::settings::Own;
 
-    const TEXT: &str = "; a comment\nWidth = 40 ; another\n+H30 -D +L\"my inc\"\n[Low]\nwidth=4\n[Really High]\n\
-                        Height=90\nOutput_File_Name=\"a;b.png\"\nInput_File_Name=\"scene.pov\"\r\n";
+    const TEXT: &str = "; a comment\n # Width=20\n#\nWidth = 40 ; another\n+H30 -D +L\"my inc\"\n[Low]\nwidth=4\n[Really High]\n\
+                        Height=90\nOutput_File_Name=\"a;b#.png\" # a comment\nInput_File_Name=\"scene.pov\"\r\n";
 
     fn words_of(section: Option<&str>) -> Result<Vec<String>, String> {
         let folder = tempfile::tempdir().unwrap();
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(words_of(Some("low")).unwrap()[1], "4x30");
         let high = words_of(Some("really high")).unwrap();
         assert_eq!(high[1], "40x90");
-        assert_eq!(high[6..], ["--output", "a;b.png", "scene.pov"]);
+        assert_eq!(high[6..], ["--output", "a;b#.png", "scene.pov"]);
         let error = words_of(Some("none")).unwrap_err();
         assert!(error.contains("Low, Really High"), "{error}");
     }
