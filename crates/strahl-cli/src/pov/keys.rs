@@ -21,6 +21,7 @@ pub(super) const KEYS: &[&str] = &[
     "Frame_Step",
     "Height",
     "Include_Header",
+    "Include_Ini",
     "Initial_Clock",
     "Initial_Frame",
     "Input_File_Name",

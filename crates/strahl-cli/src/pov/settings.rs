@@ -1,5 +1,6 @@
 //! The settings of POV-Ray's switches and keys, and the options of strahl that do the same.
 
+use super::ini;
 use super::keys::{COMMANDS, IGNORED, KEYS, LEFT_OUT, spelled};
 use crate::input::DEFAULT_SIZE;
 use std::ffi::OsString;
@@ -11,8 +12,8 @@ use strahl::formats::image::ImageFormat;
 pub(super) struct Settings {
     /// The scene; empty if there is none.
     pub(super) input: String,
-    /// The folder of the .ini file that is being read.
-    pub(super) beside: Option<PathBuf>,
+    /// The .ini files that are being read: each one includes the next.
+    pub(super) open: Vec<PathBuf>,
     /// Notes on settings that will have no effect.
     pub(super) notes: Vec<String>,
     width: Option<u32>,
@@ -104,6 +105,11 @@ impl Settings {
         self.apply(key, value).map_err(|e| format!("{key}: {e}"))
     }
 
+    /// The folder of the .ini file that is being read.
+    pub(super) fn beside(&self) -> Option<&Path> {
+        self.open.last().and_then(|file| file.parent())
+    }
+
     fn apply(&mut self, key: &'static str, value: &str) -> Result<(), String> {
         match key {
             "Width" => self.width = Some(whole(value, 1, 1 << 24)?),
@@ -146,6 +152,7 @@ impl Settings {
             "Quality" => self.quality = Some(whole(value, 0, 11)?),
             "Output_Alpha" => self.alpha = is_on(value),
             "Create_Ini" if !is_off(value) => self.notes.push("no .ini file is written".into()),
+            "Include_Ini" => ini::include(&file_name(value)?, self)?,
             "Include_Header" => self.header = Some(file_name(value)?),
             "Compression" => {
                 // As in POV-Ray, 0 and 1 select the usual quality.
@@ -192,7 +199,7 @@ impl Settings {
         if name == "-" {
             return name.to_owned();
         }
-        let folders = [Some(PathBuf::new()), self.beside.clone()];
+        let folders = [Some(Path::new("")), self.beside()];
         let names = [
             name.to_owned(),
             format!("{name}.pov"),
