@@ -64,6 +64,7 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
             // The last scene overrides one that an .ini file names; clap refuses two on the command line.
             own.extend(scene.replace(word.clone()));
             settings.input = settings.complete(text);
+            settings.is_pov = false;
         }
     }
     let complete = OsString::from(&settings.input);

@@ -5,6 +5,7 @@ use super::keys::{COMMANDS, IGNORED, KEYS, LEFT_OUT, spelled};
 use crate::input::DEFAULT_SIZE;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use strahl::Format;
 use strahl::formats::image::ImageFormat;
 
 /// The settings so far; later ones override earlier ones.
@@ -12,6 +13,8 @@ use strahl::formats::image::ImageFormat;
 pub(super) struct Settings {
     /// The scene; empty if there is none.
     pub(super) input: String,
+    /// Whether the scene's file is in POV-Ray's language, although its name doesn't tell.
+    pub(super) is_pov: bool,
     /// The .ini files that are being read: each one includes the next.
     pub(super) open: Vec<PathBuf>,
     /// Notes on settings that will have no effect.
@@ -126,7 +129,11 @@ impl Settings {
             "Antialias_Depth" => self.depth = Some(whole(value, 1, 9)?),
             // 3 is a newer variant of 2 in POV-Ray 3.8.
             "Sampling_Method" => self.recursive = whole(value, 1, 3)? > 1,
-            "Input_File_Name" => self.input = self.scene(value)?,
+            "Input_File_Name" => {
+                self.input = self.scene(value)?;
+                let file = Path::new(&self.input);
+                self.is_pov = Format::of_path(file).is_none() && file.is_file();
+            }
             "Output_File_Name" => self.output = Some(file_name(value)?),
             "Output_File_Type" => self.file_type = Some(picture_type(value)?),
             "Bits_Per_Color" => self.bits = Some(whole(value, 1, 16)?),
@@ -187,7 +194,8 @@ impl Settings {
     /// The scene file of a setting; `.pov` may be omitted.
     fn scene(&self, value: &str) -> Result<String, String> {
         let name = self.complete(&file_name(value)?);
-        let complete = name == "-" || Path::new(&name).extension().is_some();
+        let path = Path::new(&name);
+        let complete = name == "-" || path.extension().is_some() || path.is_file();
         Ok(match complete {
             true => name,
             false => format!("{name}.pov"),
@@ -297,7 +305,7 @@ impl Settings {
             (self.resume, "--resume"),
         ];
         words.extend(flags.iter().filter(|f| f.0).map(|f| f.1.to_owned()));
-        if self.input == "-" && !own.format {
+        if (self.input == "-" || self.is_pov) && !own.format {
             words.extend(["--format".to_owned(), "pov".to_owned()]);
         }
         Ok(words)
