@@ -19,6 +19,7 @@ pub(super) const KEYS: &[&str] = &[
     "Final_Clock",
     "Final_Frame",
     "Frame_Step",
+    "Grayscale_Output",
     "Height",
     "Include_Header",
     "Include_Ini",

@@ -306,6 +306,20 @@ mod tests {
             "a.pov +FJ Compression=90",
             "--jpeg-quality 90 --output a.jpg a.pov",
         );
+        is("a.pov +FJ90", "--jpeg-quality 90 --output a.jpg a.pov");
+        is(
+            "a.pov +FNG",
+            "--bit-depth 16 --output a.png --grayscale a.pov",
+        );
+        is(
+            "a.pov +FpG",
+            "--bit-depth 16 --output a.ppm --grayscale a.pov",
+        );
+        is(
+            "a.pov Grayscale_Output=on +O-",
+            "--bit-depth 16 --output - --grayscale a.pov",
+        );
+        is("a.pov Grayscale_Output=off", "a.pov");
         is("a.pov +Ob.jpeg +FJ Compression=1", "--output b.jpeg a.pov");
         is("a.pov +O-", "--output - a.pov");
         is("a.pov +O- +FP", "--output - --picture-format ppm a.pov");
@@ -350,6 +364,7 @@ mod tests {
             ("a.pov Antialas=on", "Antialias"),
             ("a.pov +AM7", "`7`"),
             ("a.pov +FZ", "`Z`"),
+            ("a.pov +FTG", "`G`"),
             ("a.pov Declare=X", "`X`"),
             ("missing.ini", "missing.ini"),
         ] {

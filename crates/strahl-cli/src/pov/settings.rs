@@ -29,6 +29,7 @@ pub(super) struct Settings {
     output: Option<String>,
     file_type: Option<char>,
     bits: Option<u32>,
+    grayscale: bool,
     no_output: bool,
     columns: Range,
     rows: Range,
@@ -137,6 +138,7 @@ impl Settings {
             "Output_File_Name" => self.output = Some(file_name(value)?),
             "Output_File_Type" => self.file_type = Some(picture_type(value)?),
             "Bits_Per_Color" => self.bits = Some(whole(value, 1, 16)?),
+            "Grayscale_Output" => self.grayscale = is_on(value),
             "Output_to_File" => self.no_output = !is_on(value),
             "Start_Column" => self.columns.start = Some(number(value)?),
             "End_Column" => self.columns.end = Some(number(value)?),
@@ -254,8 +256,10 @@ impl Settings {
         if let Some(n) = self.threads {
             add("--threads", n.to_string());
         }
-        if let Some(bits) = self.bits {
-            add("--bit-depth", if bits > 8 { "16" } else { "8" }.into());
+        // As in POV-Ray, grey pictures have 16 bits.
+        if let Some(bits) = self.bits.or(self.grayscale.then_some(16)) {
+            let is_deep = bits > 8 || self.grayscale;
+            add("--bit-depth", if is_deep { "16" } else { "8" }.into());
         }
         for folder in &self.library {
             add("--library-path", folder.clone());
@@ -299,6 +303,7 @@ impl Settings {
         }
         let flags = [
             (self.alpha && has_alpha, "--alpha"),
+            (self.grayscale, "--grayscale"),
             (is_part, "--full-size"),
             (self.no_output, "--no-output"),
             (self.cyclic, "--cyclic"),

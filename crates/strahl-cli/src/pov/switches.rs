@@ -124,15 +124,18 @@ pub(super) fn apply(word: &str, settings: &mut Settings) -> Result<(), String> {
     result.map_err(|problem| format!("{word}: {problem}"))
 }
 
-/// Applies the letter and the number of bits, as in `N16`.
+/// Applies the letter and what follows it: the number of bits, as in `N16`, the quality of JPEG, as in `J90`, or `G` for grey values, as in
+/// `NG`.
 fn file_type(rest: &str, settings: &mut Settings) -> Result<(), String> {
     let mut letters = rest.chars();
     let Some(letter) = letters.next() else {
         return Ok(());
     };
     settings.set("Output_File_Type", &letter.to_string())?;
-    match letters.as_str() {
-        "" => Ok(()),
-        bits => settings.set("Bits_Per_Color", bits),
+    match (letter.to_ascii_uppercase(), letters.as_str()) {
+        (_, "") => Ok(()),
+        ('N' | 'P', "G" | "g") => settings.set("Grayscale_Output", "on"),
+        ('J', quality) => settings.set("Compression", quality),
+        (_, bits) => settings.set("Bits_Per_Color", bits),
     }
 }

@@ -109,6 +109,12 @@ fn pictures_of_povs_types_are_written() {
         let bytes = std::fs::read(f.join(name)).expect(name);
         assert!(bytes.starts_with(magic), "{name}");
     }
+    succeeds(f, &["+Iscene.pov", "+W8", "+H6", "+FNG", "+Ogrey"]);
+    let bytes = std::fs::read(f.join("grey.png")).expect("written");
+    assert_eq!(bytes[24..26], [16, 0], "bits, grey");
+    let parts = ["--grayscale", ".png, .ppm"];
+    let words = ["+Iscene.pov", "+W8", "+H6", "Grayscale_Output=on", "+FJ"];
+    fails(f, &words, 1, &parts);
     let output = strahl(f, &["+Iscene.pov", "+W8", "+H6", "+O-", "+FP", "-GA"]);
     assert!(output.stdout.starts_with(b"P6"), "{}", stderr(&output));
     let output = strahl(
