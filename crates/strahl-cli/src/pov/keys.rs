@@ -91,9 +91,14 @@ pub(super) const IGNORED: &[&str] = &[
     "Warning_Level",
 ];
 
+/// Histograms told the time that parts of a picture took, up to POV-Ray 3.6; version 3.7 ignores their settings, too.
+const HISTOGRAMS: &str =
+    "histograms are not written; `strahl heatmap` shows where a picture is costly";
+
 /// Keys that strahl does not implement, with the note that the user gets.
 pub(super) const LEFT_OUT: &[(&str, &str)] = &[
     ("All_File", "messages are not written to files"),
+    ("Create_Histogram", HISTOGRAMS),
     ("Debug_File", "messages are not written to files"),
     ("Dither", "pictures are not dithered"),
     ("Fatal_File", "messages are not written to files"),
@@ -101,8 +106,15 @@ pub(super) const LEFT_OUT: &[(&str, &str)] = &[
         "Field_Render",
         "fields are not rendered: the picture has all rows",
     ),
+    ("Histogram_Grid_Size", HISTOGRAMS),
+    ("Histogram_Name", HISTOGRAMS),
+    ("Histogram_Type", HISTOGRAMS),
     ("Radiosity_From_File", "radiosity is not supported"),
     ("Radiosity_To_File", "radiosity is not supported"),
+    (
+        "Real_Time_Raytracing",
+        "pictures are not shown in real time: they are written as usual",
+    ),
     ("Render_File", "messages are not written to files"),
     (
         "Statistic_File",

@@ -190,6 +190,20 @@ fn what_is_left_out_is_noted() {
         assert!(said.contains(part), "{said}");
     }
     assert!(!f.join("log.txt").exists());
+    // Settings of old povray.ini files.
+    write(
+        f,
+        "old.ini",
+        "Histogram_Type=CSV\nHistogram_Name=h.csv\nHistogram_Grid_Size=4.3\nCreate_Histogram=on\n+W4 +H3\n",
+    );
+    let words = ["old.ini", "+Iscene.pov", "+B", "-B", "+B100", "-RTR"];
+    let said = succeeds(f, &words);
+    assert_eq!(said.matches("histograms are not written").count(), 1);
+    assert!(!said.contains("real time"), "{said}");
+    for word in ["+RTR", "Real_Time_Raytracing=on"] {
+        let said = succeeds(f, &["+Iscene.pov", "+W4", "+H3", word]);
+        assert!(said.contains("real time"), "{said}");
+    }
     fails(
         f,
         &["+Iscene.pov", "+W4", "+H3", "Dither=on", "--strict"],
