@@ -95,12 +95,13 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
     })
 }
 
-/// Whether a word is a switch of POV-Ray and not an option of strahl: `-L` means the same in both.
+/// Whether a word is a switch of POV-Ray and not an option of strahl: `-L` means the same in both, `-h` and `-q` are POV-Ray's before a number.
 fn is_switch(word: &str) -> bool {
     let mut letters = word.chars();
     match (letters.next(), letters.next()) {
         (Some('+'), Some(_)) => true,
-        (Some('-'), Some(c)) => c.is_ascii_alphabetic() && !matches!(c, 'o' | 'q' | 'h' | 'L'),
+        (Some('-'), Some('h' | 'q')) => letters.next().is_some_and(|c| c.is_ascii_digit()),
+        (Some('-'), Some(c)) => c.is_ascii_alphabetic() && !matches!(c, 'o' | 'L'),
         _ => false,
     }
 }
@@ -238,6 +239,8 @@ mod tests {
             "strahl info +W3",
             "strahl",
             "strahl --help",
+            "strahl -h",
+            "strahl render -h",
             "strahl -V",
             "strahl rendr scene.pov",
             "strahl --strict check render",
@@ -255,6 +258,8 @@ mod tests {
         );
         is("+ia.pov +w64", "--size 64x600 a.pov");
         is("-Ia.pov -W64 -H48", "--size 64x48 a.pov");
+        is("-ia.pov -w64 -h48 -q", "--size 64x48 -q a.pov");
+        is("a.pov -q9 -q3", "--quality 3 a.pov");
         is("a.pov +A", "--sampling adaptive:0.3,3 a.pov");
         is("a.pov +A0.3 +AM2 +R3", "--sampling recursive:0.3,3 a.pov");
         is("a.pov +A0.2 +AG1.8", "--sampling adaptive:0.2,3,1.8 a.pov");
