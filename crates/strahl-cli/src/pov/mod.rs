@@ -79,6 +79,9 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
             notes: vec![],
         });
     }
+    if scene.is_none() && settings.input.is_empty() && !own.iter().any(asks_for_text) {
+        return Err(NO_SCENE.to_owned());
+    }
     let mut all = words[..=render].to_vec();
     let translated = settings.words(&Own::of(&own))?;
     all.extend(translated.into_iter().map(OsString::from));
@@ -93,6 +96,17 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
         words: all,
         notes: settings.notes,
     })
+}
+
+/// The error if words of POV-Ray name no scene. In strahl's own options this means the demo scene.
+const NO_SCENE: &str = "no scene is named: add it to the command, as in `strahl +Iscene.pov +W640 +H480`, \
+                        or to the .ini file, as `Input_File_Name=scene.pov`";
+
+/// Whether an option asks for the help or the version instead of a picture.
+fn asks_for_text(option: &OsString) -> bool {
+    ["-h", "--help", "-V", "--version"]
+        .iter()
+        .any(|text| option == text)
 }
 
 /// Whether a word is a switch of POV-Ray and not an option of strahl: `-L` means the same in both, `-h` and `-q` are POV-Ray's before a number.
@@ -294,6 +308,12 @@ mod tests {
     }
 
     #[test]
+    fn help_needs_no_scene() {
+        let help = translated("+W8 --help").unwrap();
+        assert!(help.ends_with("--help"), "{help}");
+    }
+
+    #[test]
     fn output_names_end_as_the_picture_is_written() {
         is("a.pov +Ob", "--output b.png a.pov");
         is("a.pov +Ob.exr", "--output b.exr a.pov");
@@ -372,6 +392,8 @@ mod tests {
             ("a.pov +FTG", "`G`"),
             ("a.pov Declare=X", "`X`"),
             ("missing.ini", "missing.ini"),
+            ("+W8 +H6", "Input_File_Name=scene.pov"),
+            ("Width=8 --size 8x6", "no scene"),
         ] {
             let error = translated(line).expect_err(line);
             assert!(error.contains(part), "{line}: {error}");

@@ -76,6 +76,10 @@ fn without_a_scene_there_is_a_demonstration() {
     let said = succeeds(folder.path(), &["render", "--size", "32x24"]);
     assert_eq!(size(folder.path(), "demo.png"), (32, 24));
     assert!(!said.contains("warning"), "{said}");
+    write(folder.path(), "size.ini", "Width=8\n");
+    for words in [&["size.ini"][..], &["+W8", "+H6"], &["render", "Width=8"]] {
+        fails(folder.path(), words, 2, &["no scene", "+Iscene.pov"]);
+    }
 }
 
 #[test]
