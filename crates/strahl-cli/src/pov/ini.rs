@@ -147,7 +147,8 @@ fn words(line: &str) -> Vec<String> {
     out
 }
 
-fn unquoted(value: &str) -> &str {
+/// The value without the quotation marks around it.
+pub(super) fn unquoted(value: &str) -> &str {
     let inner = |quote| value.strip_prefix(quote)?.strip_suffix(quote);
     inner('"').or_else(|| inner('\'')).unwrap_or(value)
 }

@@ -57,7 +57,7 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
             ini::apply(&file, section.as_deref(), &mut settings)?;
         } else if let Some((key, value)) = assignment(text) {
             foreign = true;
-            settings.set(key, value)?;
+            settings.set(key, ini::unquoted(value))?;
         } else if text.starts_with('-') && text != "-" {
             own.push(word.clone());
         } else {
@@ -283,6 +283,10 @@ mod tests {
         is(
             "a.pov +Linc -Lmore --seed 3",
             "--library-path inc -Lmore --seed 3 a.pov",
+        );
+        is(
+            r#"+I"a.pov" Library_Path="lib" +L'more' +O"b.png""#,
+            "--library-path lib --library-path more --output b.png a.pov",
         );
         is("+I- +Ox.png", "--output x.png --format pov -");
         is(

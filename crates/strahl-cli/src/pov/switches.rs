@@ -1,5 +1,6 @@
 //! POV-Ray's switches, such as `+W640`, `-D`, `+A0.3`: each is an abbreviation of settings.
 
+use super::ini;
 use super::settings::Settings;
 
 /// The meaning of a switch.
@@ -105,7 +106,7 @@ pub(super) fn apply(word: &str, settings: &mut Settings) -> Result<(), String> {
             "unknown switch `{word}`: it is neither an option of strahl (see `strahl render --help`) nor a switch of POV-Ray"
         ));
     };
-    let rest = body.get(name.len()..).unwrap_or_default();
+    let rest = ini::unquoted(body.get(name.len()..).unwrap_or_default());
     let state = if on { "on" } else { "off" };
     let result = match *meaning {
         Value(key) => settings.set(key, rest),
