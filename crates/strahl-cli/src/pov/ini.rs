@@ -57,16 +57,15 @@ pub(super) fn apply(
     settings.open.push(file.to_owned());
     let sections = apply_text(&text, &shown.to_string(), section, settings)?;
     settings.open.pop();
-    match section {
-        Some(s) if !sections.iter().any(|l| l.eq_ignore_ascii_case(s)) => {
-            let has = match sections.is_empty() {
-                true => "no sections".to_owned(),
-                false => format!("the sections {}", sections.join(", ")),
-            };
-            Err(format!("`{shown}` has no section [{s}]; it has {has}"))
-        }
-        _ => Ok(()),
+    if let Some(s) = section.filter(|s| !sections.iter().any(|l| l.eq_ignore_ascii_case(s))) {
+        let has = match sections.is_empty() {
+            true => "no sections".to_owned(),
+            false => format!("the sections {}", sections.join(", ")),
+        };
+        let note = format!("`{shown}` has no section [{s}], which is ignored; it has {has}");
+        settings.notes.push(note);
     }
+    Ok(())
 }
 
 /// Applies the lines of a file; returns the names of all its sections.
@@ -188,8 +187,7 @@ mod tests {
         let high = words_of(Some("really high")).unwrap();
         assert_eq!(high[1], "40x90");
         assert_eq!(high[6..], ["--output", "a;b#.png", "scene.pov"]);
-        let error = words_of(Some("none")).unwrap_err();
-        assert!(error.contains("Low, Really High"), "{error}");
+        assert_eq!(words_of(Some("none")).unwrap(), general);
     }
 
     #[test]

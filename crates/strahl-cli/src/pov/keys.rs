@@ -42,6 +42,33 @@ pub(super) const KEYS: &[&str] = &[
     "Work_Threads",
 ];
 
+/// Keys whose value is a number.
+pub(super) const NUMBERS: &[&str] = &[
+    "Antialias_Depth",
+    "Antialias_Gamma",
+    "Antialias_Threshold",
+    "Bits_Per_Color",
+    "Clock",
+    "Compression",
+    "End_Column",
+    "End_Row",
+    "Final_Clock",
+    "Final_Frame",
+    "Frame_Step",
+    "Height",
+    "Initial_Clock",
+    "Initial_Frame",
+    "Quality",
+    "Sampling_Method",
+    "Start_Column",
+    "Start_Row",
+    "Subset_End_Frame",
+    "Subset_Start_Frame",
+    "Version",
+    "Width",
+    "Work_Threads",
+];
+
 /// Keys that concern displays, the amount of messages, memory or speed, or that only matter together with others: accepted
 /// without effect.
 pub(super) const IGNORED: &[&str] = &[

@@ -354,6 +354,17 @@ mod tests {
         is("a.pov +O- +FP", "--output - --picture-format ppm a.pov");
         is("a.pov +Q4", "--quality 4 a.pov");
         is("a.pov +Q11", "a.pov");
+        is("a.pov Quality=12", "a.pov");
+        is("a.pov Quality=0x9", "--quality 0 a.pov");
+        is("a.pov +A0.3.4 +R12", "--sampling adaptive:0.3,9 a.pov");
+        is("a.pov Clock=1/2 +K1e-1", "--clock 1e-1 a.pov");
+        is("a.pov +W16/2 +H12abc", "--size 16x12 a.pov");
+        is("a.pov Version=350", "--language-version 3.7 a.pov");
+        is("a.pov Declare=X=2/3", "--declare X=2 a.pov");
+        is("a.pov Declare=X=red", "--declare X=red a.pov");
+        is("a.pov Output_File_Type=N16", "--output a.png a.pov");
+        is("a.pov Output_File_Type=PNG", "--output a.ppm a.pov");
+        is("a.pov +Ostdout", "--output - a.pov");
         is("a.pov +HIx.inc", "--include x.inc a.pov");
     }
 
@@ -389,7 +400,6 @@ mod tests {
             ("a.pov +Z9", "+Z9"),
             ("a.pov +Wx", "`x`"),
             ("a.pov +W0", "`0`"),
-            ("a.pov +A0.3.4", "0.3.4"),
             ("a.pov Antialas=on", "Antialias"),
             ("a.pov +AM7", "`7`"),
             ("a.pov +FZ", "`Z`"),
