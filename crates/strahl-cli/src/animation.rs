@@ -48,8 +48,8 @@ impl Animation {
     /// All frames of the animation.
     fn of(args: &AnimationArgs) -> Result<Option<Self>, Failure> {
         let first = match (args.initial_frame, args.final_frame) {
-            // As in POV-Ray, a final frame of 0 switches the animation off.
-            (None, None) | (_, Some(0)) => return Ok(None),
+            // As in POV-Ray, a last frame of 0 switches the animation off.
+            (None | Some(0), None) | (_, Some(0)) => return Ok(None),
             (first, _) => first.unwrap_or(1),
         };
         let last = args.final_frame.unwrap_or(first);
@@ -244,6 +244,7 @@ mod tests {
     fn impossible_animations_are_refused() {
         assert_eq!(animation("").unwrap(), None);
         assert_eq!(animation("--final-frame 0").unwrap(), None);
+        assert_eq!(animation("--initial-frame 0").unwrap(), None);
         for bad in [
             "--initial-frame 5 --final-frame 2",
             "--final-frame 4000000000",

@@ -119,6 +119,7 @@ impl Target {
                 "--tile writes an EXR file, which keeps all bits, but the picture is {shown}: end its name in .exr"
             )));
         }
+        self.check_grayscale(args.grayscale)?;
         if args.alpha && !self.format().info().alpha {
             return Err(Failure::new(format!(
                 "--alpha needs a format with an alpha channel (.png, .exr), but the picture is {shown}"
@@ -158,6 +159,17 @@ impl Target {
         let files = named().filter(|file| !is_standard(file));
         for file in self.file().into_iter().chain(files) {
             check_folder(file)?;
+        }
+        Ok(())
+    }
+
+    /// Checks that the format stores grey values, if they are asked for.
+    pub(crate) fn check_grayscale(&self, is_asked: bool) -> Result<(), Failure> {
+        if is_asked && !self.format().info().grayscale {
+            return Err(Failure::new(format!(
+                "--grayscale needs a format with grey pictures (.png, .ppm), but the picture is {}",
+                self.shown()
+            )));
         }
         Ok(())
     }

@@ -45,6 +45,9 @@ pub(crate) struct RenderArgs {
     /// Bits per channel of PNG and PPM pictures
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = parse_bits)]
     pub(crate) bit_depth: BitDepth,
+    /// Write grey values instead of colours (PNG, PPM)
+    #[arg(long)]
+    pub(crate) grayscale: bool,
     /// Quality of JPEG pictures, from 1 (smallest) to 100
     #[arg(long, value_name = "N", default_value_t = 85, value_parser = clap::value_parser!(u8).range(1..=100))]
     pub(crate) jpeg_quality: u8,
@@ -115,6 +118,9 @@ pub(crate) struct MergeArgs {
     /// Bits per channel of PNG and PPM pictures
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = parse_bits)]
     pub(crate) bit_depth: BitDepth,
+    /// Write grey values instead of colours (PNG, PPM)
+    #[arg(long)]
+    pub(crate) grayscale: bool,
     /// Quality of JPEG pictures, from 1 (smallest) to 100
     #[arg(long, value_name = "N", default_value_t = 85, value_parser = clap::value_parser!(u8).range(1..=100))]
     pub(crate) jpeg_quality: u8,

@@ -33,6 +33,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<(), Failure> {
         check_folder(file)?;
     }
     let real = |path: &Path| path.canonicalize().ok();
+    target.check_grayscale(args.grayscale)?;
     let own = target.file().and_then(real);
     if own.is_some() && args.tiles.iter().any(|tile| real(tile) == own) {
         return Err(Failure::new(format!(
@@ -45,6 +46,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<(), Failure> {
     work::doing(format!("writing {}", target.shown()));
     let options = WriteOptions {
         bit_depth: args.bit_depth,
+        grayscale: args.grayscale,
         jpeg_quality: args.jpeg_quality,
         ..WriteOptions::default()
     };

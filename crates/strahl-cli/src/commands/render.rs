@@ -279,6 +279,7 @@ impl Job<'_> {
         metadata.extend(notes);
         let options = WriteOptions {
             bit_depth: self.args.bit_depth,
+            grayscale: self.args.grayscale,
             jpeg_quality: self.args.jpeg_quality,
             ..WriteOptions::default()
         };

@@ -1,4 +1,4 @@
-//! POV-Ray's .ini files: `Key=Value` lines, lines of switches, `[sections]`, and comments after `;`.
+//! POV-Ray's .ini files: `Key=Value` lines, lines of switches, `[sections]`, and comments after `;` or `#`.
 
 use super::settings::Settings;
 use super::switches;
@@ -30,6 +30,15 @@ pub(super) fn without_ending(word: &str) -> Option<(PathBuf, Option<String>)> {
     (!path.exists() && file.is_file()).then_some((file, None))
 }
 
+/// Applies the .ini file that `Include_Ini` or a line of another .ini file names. It may also be in that file's folder.
+pub(super) fn include(name: &str, settings: &mut Settings) -> Result<(), String> {
+    let found = named(name).or_else(|| without_ending(name));
+    let (file, section) = found.unwrap_or_else(|| (PathBuf::from(name), None));
+    let near = settings.beside().map(|folder| folder.join(&file));
+    let near = near.filter(|near| !file.is_file() && near.is_file());
+    apply(&near.unwrap_or(file), section.as_deref(), settings)
+}
+
 /// Applies a file's settings: those before the first section, then those of the section.
 pub(super) fn apply(
     file: &Path,
@@ -39,7 +48,33 @@ pub(super) fn apply(
     let shown = file.display();
     let bytes = std::fs::read(file).map_err(|e| format!("cannot read `{shown}`: {e}"))?;
     let text = String::from_utf8_lossy(&bytes);
-    settings.beside = file.parent().map(Path::to_path_buf);
+    let is_file = |open: &PathBuf| open.canonicalize().ok() == file.canonicalize().ok();
+    if settings.open.iter().any(is_file) {
+        return Err(format!(
+            "`{shown}` includes itself, directly or by another file"
+        ));
+    }
+    settings.open.push(file.to_owned());
+    let sections = apply_text(&text, &shown.to_string(), section, settings)?;
+    settings.open.pop();
+    if let Some(s) = section.filter(|s| !sections.iter().any(|l| l.eq_ignore_ascii_case(s))) {
+        let has = match sections.is_empty() {
+            true => "no sections".to_owned(),
+            false => format!("the sections {}", sections.join(", ")),
+        };
+        let note = format!("`{shown}` has no section [{s}], which is ignored; it has {has}");
+        settings.notes.push(note);
+    }
+    Ok(())
+}
+
+/// Applies the lines of a file; returns the names of all its sections.
+fn apply_text(
+    text: &str,
+    shown: &str,
+    section: Option<&str>,
+    settings: &mut Settings,
+) -> Result<Vec<String>, String> {
     let mut sections = vec![];
     let mut applies = true;
     for (number, line) in text.lines().enumerate() {
@@ -52,17 +87,7 @@ pub(super) fn apply(
             apply_line(line, settings).map_err(|e| format!("{shown}:{}: {e}", number + 1))?;
         }
     }
-    settings.beside = None;
-    match section {
-        Some(s) if !sections.iter().any(|l| l.eq_ignore_ascii_case(s)) => {
-            let has = match sections.is_empty() {
-                true => "no sections".to_owned(),
-                false => format!("the sections {}", sections.join(", ")),
-            };
-            Err(format!("`{shown}` has no section [{s}]; it has {has}"))
-        }
-        _ => Ok(()),
-    }
+    Ok(sections)
 }
 
 fn apply_line(line: &str, settings: &mut Settings) -> Result<(), String> {
@@ -72,19 +97,34 @@ fn apply_line(line: &str, settings: &mut Settings) -> Result<(), String> {
         }
         return Ok(());
     }
-    let (key, value) = line.split_once('=').ok_or_else(|| {
-        format!("`{line}` is neither `Key=Value` nor switches such as `+W640 +H480`")
-    })?;
-    settings.set(key.trim(), unquoted(value.trim()))
+    match line.split_once('=') {
+        Some((key, value)) => settings.set(key.trim(), unquoted(value.trim())),
+        None => apply_name(unquoted(line), settings),
+    }
 }
 
-/// The line before a semicolon outside of quotation marks.
+/// Applies a line that holds only the name of an .ini file or of a scene.
+fn apply_name(name: &str, settings: &mut Settings) -> Result<(), String> {
+    if named(name).is_some() {
+        return include(name, settings);
+    }
+    let ending = Path::new(name).extension();
+    let is_scene = ending.is_some_and(|e| e.eq_ignore_ascii_case("pov"));
+    if is_scene || Path::new(&settings.complete(name)).is_file() {
+        return settings.set("Input_File_Name", name);
+    }
+    Err(format!(
+        "`{name}` is neither `Key=Value`, switches such as `+W640 +H480`, nor the name of an .ini file or a scene"
+    ))
+}
+
+/// The line before a semicolon or `#` outside of quotation marks.
 fn without_comment(line: &str) -> &str {
     let mut quoted = false;
     for (at, c) in line.char_indices() {
         match c {
             '"' => quoted = !quoted,
-            ';' if !quoted => return &line[..at],
+            ';' | '#' if !quoted => return &line[..at],
             _ => {}
         }
     }
@@ -106,7 +146,8 @@ fn words(line: &str) -> Vec<String> {
     out
 }
 
-fn unquoted(value: &str) -> &str {
+/// The value without the quotation marks around it.
+pub(super) fn unquoted(value: &str) -> &str {
     let inner = |quote| value.strip_prefix(quote)?.strip_suffix(quote);
     inner('"').or_else(|| inner('\'')).unwrap_or(value)
 }
@@ -116,8 +157,8 @@ mod tests {
     use super::*;
     use crate::pov::settings::Own;
 
-    const TEXT: &str = "; a comment\nWidth = 40 ; another\n+H30 -D +L\"my inc\"\n[Low]\nwidth=4\n[Really High]\n\
-                        Height=90\nOutput_File_Name=\"a;b.png\"\nInput_File_Name=\"scene.pov\"\r\n";
+    const TEXT: &str = "; a comment\n # Width=20\n#\nWidth = 40 ; another\n+H30 -D +L\"my inc\"\n[Low]\nwidth=4\n[Really High]\n\
+                        Height=90\nOutput_File_Name=\"a;b#.png\" # a comment\nInput_File_Name=\"scene.pov\"\r\n";
 
     fn words_of(section: Option<&str>) -> Result<Vec<String>, String> {
         let folder = tempfile::tempdir().unwrap();
@@ -145,9 +186,38 @@ mod tests {
         assert_eq!(words_of(Some("low")).unwrap()[1], "4x30");
         let high = words_of(Some("really high")).unwrap();
         assert_eq!(high[1], "40x90");
-        assert_eq!(high[6..], ["--output", "a;b.png", "scene.pov"]);
-        let error = words_of(Some("none")).unwrap_err();
-        assert!(error.contains("Low, Really High"), "{error}");
+        assert_eq!(high[6..], ["--output", "a;b#.png", "scene.pov"]);
+        assert_eq!(words_of(Some("none")).unwrap(), general);
+    }
+
+    #[test]
+    fn files_are_included() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text);
+        write("q.ini", "Width=8\n[x]\nHeight=9\n").unwrap();
+        write("loop.ini", "Include_Ini=./loop.ini\n").unwrap();
+        let size_of = |text: &str| {
+            write("a.ini", text).unwrap();
+            let mut settings = Settings::default();
+            apply(&folder.path().join("a.ini"), None, &mut settings)?;
+            Ok(settings.words(&Own::default())?[1].clone())
+        };
+        for (text, size) in [
+            ("Include_Ini=q.ini", "8x600"),
+            ("Include_Ini=\"q[x]\"\nWidth=5", "5x9"),
+            ("q.ini[x]\na.pov", "8x9"),
+            ("\"q.ini\" ; the size\nHeight=3", "8x3"),
+        ] {
+            assert_eq!(size_of(text), Ok(size.to_owned()), "{text}");
+        }
+        for (text, part) in [
+            ("loop.ini", "includes itself"),
+            ("Include_Ini=none.ini", "a.ini:1: Include_Ini: cannot read"),
+            ("nothing", "`nothing` is neither"),
+        ] {
+            let error: String = size_of(text).unwrap_err();
+            assert!(error.contains(part), "{text}: {error}");
+        }
     }
 
     #[test]

@@ -19,8 +19,10 @@ pub(super) const KEYS: &[&str] = &[
     "Final_Clock",
     "Final_Frame",
     "Frame_Step",
+    "Grayscale_Output",
     "Height",
     "Include_Header",
+    "Include_Ini",
     "Initial_Clock",
     "Initial_Frame",
     "Input_File_Name",
@@ -29,6 +31,33 @@ pub(super) const KEYS: &[&str] = &[
     "Output_File_Name",
     "Output_File_Type",
     "Output_to_File",
+    "Quality",
+    "Sampling_Method",
+    "Start_Column",
+    "Start_Row",
+    "Subset_End_Frame",
+    "Subset_Start_Frame",
+    "Version",
+    "Width",
+    "Work_Threads",
+];
+
+/// Keys whose value is a number.
+pub(super) const NUMBERS: &[&str] = &[
+    "Antialias_Depth",
+    "Antialias_Gamma",
+    "Antialias_Threshold",
+    "Bits_Per_Color",
+    "Clock",
+    "Compression",
+    "End_Column",
+    "End_Row",
+    "Final_Clock",
+    "Final_Frame",
+    "Frame_Step",
+    "Height",
+    "Initial_Clock",
+    "Initial_Frame",
     "Quality",
     "Sampling_Method",
     "Start_Column",
@@ -89,9 +118,14 @@ pub(super) const IGNORED: &[&str] = &[
     "Warning_Level",
 ];
 
+/// Histograms told the time that parts of a picture took, up to POV-Ray 3.6; version 3.7 ignores their settings, too.
+const HISTOGRAMS: &str =
+    "histograms are not written; `strahl heatmap` shows where a picture is costly";
+
 /// Keys that strahl does not implement, with the note that the user gets.
 pub(super) const LEFT_OUT: &[(&str, &str)] = &[
     ("All_File", "messages are not written to files"),
+    ("Create_Histogram", HISTOGRAMS),
     ("Debug_File", "messages are not written to files"),
     ("Dither", "pictures are not dithered"),
     ("Fatal_File", "messages are not written to files"),
@@ -99,8 +133,15 @@ pub(super) const LEFT_OUT: &[(&str, &str)] = &[
         "Field_Render",
         "fields are not rendered: the picture has all rows",
     ),
+    ("Histogram_Grid_Size", HISTOGRAMS),
+    ("Histogram_Name", HISTOGRAMS),
+    ("Histogram_Type", HISTOGRAMS),
     ("Radiosity_From_File", "radiosity is not supported"),
     ("Radiosity_To_File", "radiosity is not supported"),
+    (
+        "Real_Time_Raytracing",
+        "pictures are not shown in real time: they are written as usual",
+    ),
     ("Render_File", "messages are not written to files"),
     (
         "Statistic_File",

@@ -57,13 +57,14 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
             ini::apply(&file, section.as_deref(), &mut settings)?;
         } else if let Some((key, value)) = assignment(text) {
             foreign = true;
-            settings.set(key, value)?;
+            settings.set(key, ini::unquoted(value))?;
         } else if text.starts_with('-') && text != "-" {
             own.push(word.clone());
         } else {
             // The last scene overrides one that an .ini file names; clap refuses two on the command line.
             own.extend(scene.replace(word.clone()));
             settings.input = settings.complete(text);
+            settings.is_pov = false;
         }
     }
     let complete = OsString::from(&settings.input);
@@ -77,6 +78,9 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
             words: words.into_iter().map(replaced).collect(),
             notes: vec![],
         });
+    }
+    if scene.is_none() && settings.input.is_empty() && !own.iter().any(asks_for_text) {
+        return Err(NO_SCENE.to_owned());
     }
     let mut all = words[..=render].to_vec();
     let translated = settings.words(&Own::of(&own))?;
@@ -94,12 +98,24 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
     })
 }
 
-/// Whether a word is a switch of POV-Ray and not an option of strahl: `-L` means the same in both.
+/// The error if words of POV-Ray name no scene. In strahl's own options this means the demo scene.
+const NO_SCENE: &str = "no scene is named: add it to the command, as in `strahl +Iscene.pov +W640 +H480`, \
+                        or to the .ini file, as `Input_File_Name=scene.pov`";
+
+/// Whether an option asks for the help or the version instead of a picture.
+fn asks_for_text(option: &OsString) -> bool {
+    ["-h", "--help", "-V", "--version"]
+        .iter()
+        .any(|text| option == text)
+}
+
+/// Whether a word is a switch of POV-Ray and not an option of strahl: `-L` means the same in both, `-h` and `-q` are POV-Ray's before a number.
 fn is_switch(word: &str) -> bool {
     let mut letters = word.chars();
     match (letters.next(), letters.next()) {
         (Some('+'), Some(_)) => true,
-        (Some('-'), Some(c)) => c.is_ascii_alphabetic() && !matches!(c, 'o' | 'q' | 'h' | 'L'),
+        (Some('-'), Some('h' | 'q')) => letters.next().is_some_and(|c| c.is_ascii_digit()),
+        (Some('-'), Some(c)) => c.is_ascii_alphabetic() && !matches!(c, 'o' | 'L'),
         _ => false,
     }
 }
@@ -237,6 +253,8 @@ mod tests {
             "strahl info +W3",
             "strahl",
             "strahl --help",
+            "strahl -h",
+            "strahl render -h",
             "strahl -V",
             "strahl rendr scene.pov",
             "strahl --strict check render",
@@ -254,6 +272,8 @@ mod tests {
         );
         is("+ia.pov +w64", "--size 64x600 a.pov");
         is("-Ia.pov -W64 -H48", "--size 64x48 a.pov");
+        is("-ia.pov -w64 -h48 -q", "--size 64x48 -q a.pov");
+        is("a.pov -q9 -q3", "--quality 3 a.pov");
         is("a.pov +A", "--sampling adaptive:0.3,3 a.pov");
         is("a.pov +A0.3 +AM2 +R3", "--sampling recursive:0.3,3 a.pov");
         is("a.pov +A0.2 +AG1.8", "--sampling adaptive:0.2,3,1.8 a.pov");
@@ -263,6 +283,10 @@ mod tests {
         is(
             "a.pov +Linc -Lmore --seed 3",
             "--library-path inc -Lmore --seed 3 a.pov",
+        );
+        is(
+            r#"+I"a.pov" Library_Path="lib" +L'more' +O"b.png""#,
+            "--library-path lib --library-path more --output b.png a.pov",
         );
         is("+I- +Ox.png", "--output x.png --format pov -");
         is(
@@ -288,6 +312,12 @@ mod tests {
     }
 
     #[test]
+    fn help_needs_no_scene() {
+        let help = translated("+W8 --help").unwrap();
+        assert!(help.ends_with("--help"), "{help}");
+    }
+
+    #[test]
     fn output_names_end_as_the_picture_is_written() {
         is("a.pov +Ob", "--output b.png a.pov");
         is("a.pov +Ob.exr", "--output b.exr a.pov");
@@ -295,16 +325,46 @@ mod tests {
         is("a.pov +Ob.c +FH", "--output b.c.hdr a.pov");
         is("dir/a.pov +Oout/", "--output out/a.png dir/a.pov");
         is("a.pov +Ob.tga +FT", "--output b.tga a.pov");
+        is("+Iscenes/a.pov", "--output scenes/ scenes/a.pov");
+        is("/tmp/a.pov +W8 +H6", "--size 8x6 --output /tmp/ /tmp/a.pov");
+        is("+Iscenes/a.pov +FP", "--output scenes/a.ppm scenes/a.pov");
+        is("+Iscenes/a.pov +Ob", "--output b.png scenes/a.pov");
+        is("scenes/a.pov", "scenes/a.pov");
         is("a.pov +FB", "--output a.bmp a.pov");
         is(
             "a.pov +FJ Compression=90",
             "--jpeg-quality 90 --output a.jpg a.pov",
         );
+        is("a.pov +FJ90", "--jpeg-quality 90 --output a.jpg a.pov");
+        is(
+            "a.pov +FNG",
+            "--bit-depth 16 --output a.png --grayscale a.pov",
+        );
+        is(
+            "a.pov +FpG",
+            "--bit-depth 16 --output a.ppm --grayscale a.pov",
+        );
+        is(
+            "a.pov Grayscale_Output=on +O-",
+            "--bit-depth 16 --output - --grayscale a.pov",
+        );
+        is("a.pov Grayscale_Output=off", "a.pov");
         is("a.pov +Ob.jpeg +FJ Compression=1", "--output b.jpeg a.pov");
         is("a.pov +O-", "--output - a.pov");
         is("a.pov +O- +FP", "--output - --picture-format ppm a.pov");
         is("a.pov +Q4", "--quality 4 a.pov");
         is("a.pov +Q11", "a.pov");
+        is("a.pov Quality=12", "a.pov");
+        is("a.pov Quality=0x9", "--quality 0 a.pov");
+        is("a.pov +A0.3.4 +R12", "--sampling adaptive:0.3,9 a.pov");
+        is("a.pov Clock=1/2 +K1e-1", "--clock 1e-1 a.pov");
+        is("a.pov +W16/2 +H12abc", "--size 16x12 a.pov");
+        is("a.pov Version=350", "--language-version 3.7 a.pov");
+        is("a.pov Declare=X=2/3", "--declare X=2 a.pov");
+        is("a.pov Declare=X=red", "--declare X=red a.pov");
+        is("a.pov Output_File_Type=N16", "--output a.png a.pov");
+        is("a.pov Output_File_Type=PNG", "--output a.ppm a.pov");
+        is("a.pov +Ostdout", "--output - a.pov");
         is("a.pov +HIx.inc", "--include x.inc a.pov");
     }
 
@@ -340,12 +400,14 @@ mod tests {
             ("a.pov +Z9", "+Z9"),
             ("a.pov +Wx", "`x`"),
             ("a.pov +W0", "`0`"),
-            ("a.pov +A0.3.4", "0.3.4"),
             ("a.pov Antialas=on", "Antialias"),
             ("a.pov +AM7", "`7`"),
             ("a.pov +FZ", "`Z`"),
+            ("a.pov +FTG", "`G`"),
             ("a.pov Declare=X", "`X`"),
             ("missing.ini", "missing.ini"),
+            ("+W8 +H6", "Input_File_Name=scene.pov"),
+            ("Width=8 --size 8x6", "no scene"),
         ] {
             let error = translated(line).expect_err(line);
             assert!(error.contains(part), "{line}: {error}");

@@ -1,9 +1,11 @@
 //! The settings of POV-Ray's switches and keys, and the options of strahl that do the same.
 
-use super::keys::{COMMANDS, IGNORED, KEYS, LEFT_OUT, spelled};
+use super::ini;
+use super::keys::{COMMANDS, IGNORED, KEYS, LEFT_OUT, NUMBERS, spelled};
 use crate::input::DEFAULT_SIZE;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use strahl::Format;
 use strahl::formats::image::ImageFormat;
 
 /// The settings so far; later ones override earlier ones.
@@ -11,8 +13,10 @@ use strahl::formats::image::ImageFormat;
 pub(super) struct Settings {
     /// The scene; empty if there is none.
     pub(super) input: String,
-    /// The folder of the .ini file that is being read.
-    pub(super) beside: Option<PathBuf>,
+    /// Whether the scene's file is in POV-Ray's language, although its name doesn't tell.
+    pub(super) is_pov: bool,
+    /// The .ini files that are being read: each one includes the next.
+    pub(super) open: Vec<PathBuf>,
     /// Notes on settings that will have no effect.
     pub(super) notes: Vec<String>,
     width: Option<u32>,
@@ -25,6 +29,7 @@ pub(super) struct Settings {
     output: Option<String>,
     file_type: Option<char>,
     bits: Option<u32>,
+    grayscale: bool,
     no_output: bool,
     columns: Range,
     rows: Range,
@@ -101,7 +106,31 @@ impl Settings {
                 .push(format!("{key} is ignored: strahl runs no programs"));
             return Ok(());
         }
+        let value = match NUMBERS.contains(&key) {
+            true => self.leading_number(key, value),
+            false => value,
+        };
         self.apply(key, value).map_err(|e| format!("{key}: {e}"))
+    }
+
+    /// The number that a value begins with, as in POV-Ray, with a note if more follows. A value without a number stays as it is.
+    fn leading_number<'a>(&mut self, key: &str, value: &'a str) -> &'a str {
+        let number = leading_number(value);
+        // POV-Ray reads hexadecimal fractions, which strahl refuses, but no hexadecimal levels: `Quality=0x9` is 0.
+        let is_hexadecimal = number == "0" && value[1..].starts_with(['x', 'X']);
+        let is_refused = is_hexadecimal && key != "Quality";
+        if number.is_empty() || number == value || is_refused {
+            return value;
+        }
+        self.note(&format!(
+            "{key}: `{value}` is read as {number}, as in POV-Ray"
+        ));
+        number
+    }
+
+    /// The folder of the .ini file that is being read.
+    pub(super) fn beside(&self) -> Option<&Path> {
+        self.open.last().and_then(|file| file.parent())
     }
 
     fn apply(&mut self, key: &'static str, value: &str) -> Result<(), String> {
@@ -117,13 +146,18 @@ impl Settings {
                 }
                 self.antialias_gamma = Some(gamma);
             }
-            "Antialias_Depth" => self.depth = Some(whole(value, 1, 9)?),
+            "Antialias_Depth" => self.depth = Some(whole(value, 1, u32::MAX)?.min(9)),
             // 3 is a newer variant of 2 in POV-Ray 3.8.
             "Sampling_Method" => self.recursive = whole(value, 1, 3)? > 1,
-            "Input_File_Name" => self.input = self.scene(value)?,
-            "Output_File_Name" => self.output = Some(file_name(value)?),
-            "Output_File_Type" => self.file_type = Some(picture_type(value)?),
-            "Bits_Per_Color" => self.bits = Some(whole(value, 1, 16)?),
+            "Input_File_Name" => {
+                self.input = self.scene(value)?;
+                let file = Path::new(&self.input);
+                self.is_pov = Format::of_path(file).is_none() && file.is_file();
+            }
+            "Output_File_Name" => self.output = Some(output_name(value)?),
+            "Output_File_Type" => self.file_type = Some(self.picture_type(value)?),
+            "Bits_Per_Color" => self.bits = Some(whole(value, 1, u32::MAX)?),
+            "Grayscale_Output" => self.grayscale = is_on(value),
             "Output_to_File" => self.no_output = !is_on(value),
             "Start_Column" => self.columns.start = Some(number(value)?),
             "End_Column" => self.columns.end = Some(number(value)?),
@@ -131,8 +165,11 @@ impl Settings {
             "End_Row" => self.rows.end = Some(number(value)?),
             "Work_Threads" => self.threads = Some(whole(value, 1, 512)?),
             "Library_Path" => self.library.push(file_name(value)?),
-            "Declare" => self.declare.push(declaration(value)?),
-            "Version" => self.version = Some(number(value)?),
+            "Declare" => {
+                let declaration = self.declaration(value)?;
+                self.declare.push(declaration);
+            }
+            "Version" => self.version = Some(self.language_version(value)?),
             "Continue_Trace" => self.resume = is_on(value),
             "Cyclic_Animation" => self.cyclic = is_on(value),
             "Initial_Frame" => self.initial_frame = frame(value)?,
@@ -143,9 +180,10 @@ impl Settings {
             "Subset_End_Frame" => self.time("--subset-end-frame", value)?,
             "Frame_Step" => self.time("--frame-step", value)?,
             "Clock" => self.time("--clock", value)?,
-            "Quality" => self.quality = Some(whole(value, 0, 11)?),
+            "Quality" => self.quality = Some(whole(value, 0, u32::MAX)?),
             "Output_Alpha" => self.alpha = is_on(value),
             "Create_Ini" if !is_off(value) => self.notes.push("no .ini file is written".into()),
+            "Include_Ini" => ini::include(&file_name(value)?, self)?,
             "Include_Header" => self.header = Some(file_name(value)?),
             "Compression" => {
                 // As in POV-Ray, 0 and 1 select the usual quality.
@@ -177,10 +215,52 @@ impl Settings {
         Ok(())
     }
 
+    /// NAME=NUMBER. What follows the number is left out.
+    fn declaration(&mut self, value: &str) -> Result<String, String> {
+        match value.split_once('=') {
+            Some((name, number)) if !name.trim().is_empty() => {
+                let number = self.leading_number("Declare", number.trim());
+                Ok(format!("{}={number}", name.trim()))
+            }
+            _ => Err(format!("expected NAME=NUMBER, found `{value}`")),
+        }
+    }
+
+    /// The letter of a picture's type. Only the first one counts, as in POV-Ray.
+    fn picture_type(&mut self, value: &str) -> Result<char, String> {
+        let letter = value.chars().next().map_or(' ', |c| c.to_ascii_uppercase());
+        if !"BCEHJNPST".contains(letter) {
+            return Err(format!(
+                "unknown type of picture `{value}`: N is PNG, P PPM, J JPEG, B BMP, T and C TGA, H Radiance, E OpenEXR"
+            ));
+        }
+        if value.len() > 1 {
+            self.note(&format!(
+                "Output_File_Type: of `{value}` only the letter {letter} counts, as in POV-Ray; the picture is of the type .{} (N is PNG)",
+                ending(letter)
+            ));
+        }
+        Ok(letter)
+    }
+
+    /// A version of the language. POV-Ray 3.7 takes numbers above all versions (`350`) for itself.
+    fn language_version(&mut self, value: &str) -> Result<f64, String> {
+        const OF_POVRAY: f64 = 3.7;
+        let version = number(value)?;
+        if version < 4.0 {
+            return Ok(version);
+        }
+        self.note(&format!(
+            "Version: {value} is read as {OF_POVRAY}; version 3.5 is written with a point"
+        ));
+        Ok(OF_POVRAY)
+    }
+
     /// The scene file of a setting; `.pov` may be omitted.
     fn scene(&self, value: &str) -> Result<String, String> {
         let name = self.complete(&file_name(value)?);
-        let complete = name == "-" || Path::new(&name).extension().is_some();
+        let path = Path::new(&name);
+        let complete = name == "-" || path.extension().is_some() || path.is_file();
         Ok(match complete {
             true => name,
             false => format!("{name}.pov"),
@@ -192,7 +272,7 @@ impl Settings {
         if name == "-" {
             return name.to_owned();
         }
-        let folders = [Some(PathBuf::new()), self.beside.clone()];
+        let folders = [Some(Path::new("")), self.beside()];
         let names = [
             name.to_owned(),
             format!("{name}.pov"),
@@ -239,8 +319,10 @@ impl Settings {
         if let Some(n) = self.threads {
             add("--threads", n.to_string());
         }
-        if let Some(bits) = self.bits {
-            add("--bit-depth", if bits > 8 { "16" } else { "8" }.into());
+        // As in POV-Ray, grey pictures have 16 bits.
+        if let Some(bits) = self.bits.or(self.grayscale.then_some(16)) {
+            let is_deep = bits > 8 || self.grayscale;
+            add("--bit-depth", if is_deep { "16" } else { "8" }.into());
         }
         for folder in &self.library {
             add("--library-path", folder.clone());
@@ -284,13 +366,14 @@ impl Settings {
         }
         let flags = [
             (self.alpha && has_alpha, "--alpha"),
+            (self.grayscale, "--grayscale"),
             (is_part, "--full-size"),
             (self.no_output, "--no-output"),
             (self.cyclic, "--cyclic"),
             (self.resume, "--resume"),
         ];
         words.extend(flags.iter().filter(|f| f.0).map(|f| f.1.to_owned()));
-        if self.input == "-" && !own.format {
+        if (self.input == "-" || self.is_pov) && !own.format {
             words.extend(["--format".to_owned(), "pov".to_owned()]);
         }
         Ok(words)
@@ -314,6 +397,20 @@ impl Settings {
         }
     }
 
+    /// Where the picture goes if no setting names it: beside the scene, as in POV-Ray. `None` for strahl's default, the current folder.
+    fn beside_the_scene(&self) -> Option<String> {
+        let scene = Path::new(&self.input);
+        let stem = scene.file_stem().filter(|_| self.input != "-")?;
+        let folder = scene.parent().unwrap_or(Path::new(""));
+        let path = match self.file_type.map(ending) {
+            Some(ending) => folder.join(format!("{}.{ending}", stem.to_string_lossy())),
+            None if folder.as_os_str().is_empty() => return None,
+            // Only the folder, with a separator at its end: strahl's own options may still decide about the file's name.
+            None => folder.join(""),
+        };
+        Some(path.to_string_lossy().into_owned())
+    }
+
     /// The name of the picture with the extension of its type; `None` for strahl's default.
     fn output(&self) -> Result<Option<String>, String> {
         if self.output.as_deref() == Some("-") {
@@ -323,8 +420,7 @@ impl Settings {
         let scene = Path::new(&self.input).file_stem().unwrap_or_default();
         let scene = scene.to_string_lossy().into_owned();
         let Some(output) = &self.output else {
-            let named = self.file_type.is_some() && !scene.is_empty() && scene != "-";
-            return Ok(named.then(|| format!("{scene}.{ending}")));
+            return Ok(self.beside_the_scene());
         };
         if output.ends_with('/') || Path::new(output).is_dir() {
             let file = Path::new(output).join(format!("{scene}.{ending}"));
@@ -385,7 +481,11 @@ fn whole(value: &str, least: u32, most: u32) -> Result<u32, String> {
         .parse()
         .ok()
         .filter(|v| decimals.bytes().all(|b| b.is_ascii_digit()) && (least..=most).contains(v));
-    parsed.ok_or_else(|| format!("expected a whole number from {least} to {most}, found `{value}`"))
+    let range = match most {
+        u32::MAX => format!("from {least} up"),
+        most => format!("from {least} to {most}"),
+    };
+    parsed.ok_or_else(|| format!("expected a whole number {range}, found `{value}`"))
 }
 
 /// The number of a frame; -1 means none.
@@ -403,21 +503,22 @@ fn file_name(value: &str) -> Result<String, String> {
     }
 }
 
-fn declaration(value: &str) -> Result<String, String> {
-    match value.split_once('=') {
-        Some((name, _)) if !name.trim().is_empty() => Ok(value.to_owned()),
-        _ => Err(format!("expected NAME=NUMBER, found `{value}`")),
+/// The name of the picture; `stdout` is the standard output, like `-`.
+fn output_name(value: &str) -> Result<String, String> {
+    match file_name(value)?.as_str() {
+        "stdout" => Ok("-".to_owned()),
+        name => Ok(name.to_owned()),
     }
 }
 
-fn picture_type(value: &str) -> Result<char, String> {
-    let letter = value.chars().next().map_or(' ', |c| c.to_ascii_uppercase());
-    if "BCEHJNPST".contains(letter) && value.len() == 1 {
-        return Ok(letter);
-    }
-    Err(format!(
-        "unknown type of picture `{value}`: N is PNG, P PPM, J JPEG, B BMP, T and C TGA, H Radiance, E OpenEXR"
-    ))
+/// The longest beginning of a text that is a number; empty if there is none.
+fn leading_number(text: &str) -> &str {
+    let is_part = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    let most = text.find(|c| !is_part(c)).unwrap_or(text.len());
+    let mut beginnings = (1..=most).rev().map(|end| &text[..end]);
+    beginnings
+        .find(|beginning| beginning.parse::<f64>().is_ok())
+        .unwrap_or("")
 }
 
 /// The file extension of a picture type.

@@ -1,5 +1,6 @@
 //! POV-Ray's switches, such as `+W640`, `-D`, `+A0.3`: each is an abbreviation of settings.
 
+use super::ini;
 use super::settings::Settings;
 
 /// The meaning of a switch.
@@ -26,6 +27,7 @@ const SWITCHES: &[(&str, Meaning)] = &[
     ("A", FlagAndValue("Antialias", "Antialias_Threshold")),
     ("AG", Value("Antialias_Gamma")),
     ("AM", Value("Sampling_Method")),
+    ("B", Nothing),
     ("BM", Nothing),
     ("BS", Nothing),
     ("C", Flag("Continue_Trace")),
@@ -67,6 +69,7 @@ const SWITCHES: &[(&str, Meaning)] = &[
     ("RFO", Flag("Radiosity_To_File")),
     ("RP", Nothing),
     ("RS", Nothing),
+    ("RTR", Flag("Real_Time_Raytracing")),
     ("RVP", Nothing),
     ("SC", Value("Start_Column")),
     ("SF", Value("Subset_Start_Frame")),
@@ -103,7 +106,7 @@ pub(super) fn apply(word: &str, settings: &mut Settings) -> Result<(), String> {
             "unknown switch `{word}`: it is neither an option of strahl (see `strahl render --help`) nor a switch of POV-Ray"
         ));
     };
-    let rest = body.get(name.len()..).unwrap_or_default();
+    let rest = ini::unquoted(body.get(name.len()..).unwrap_or_default());
     let state = if on { "on" } else { "off" };
     let result = match *meaning {
         Value(key) => settings.set(key, rest),
@@ -124,15 +127,18 @@ pub(super) fn apply(word: &str, settings: &mut Settings) -> Result<(), String> {
     result.map_err(|problem| format!("{word}: {problem}"))
 }
 
-/// Applies the letter and the number of bits, as in `N16`.
+/// Applies the letter and what follows it: the number of bits, as in `N16`, the quality of JPEG, as in `J90`, or `G` for grey values, as in
+/// `NG`.
 fn file_type(rest: &str, settings: &mut Settings) -> Result<(), String> {
     let mut letters = rest.chars();
     let Some(letter) = letters.next() else {
         return Ok(());
     };
     settings.set("Output_File_Type", &letter.to_string())?;
-    match letters.as_str() {
-        "" => Ok(()),
-        bits => settings.set("Bits_Per_Color", bits),
+    match (letter.to_ascii_uppercase(), letters.as_str()) {
+        (_, "") => Ok(()),
+        ('N' | 'P', "G" | "g") => settings.set("Grayscale_Output", "on"),
+        ('J', quality) => settings.set("Compression", quality),
+        (_, bits) => settings.set("Bits_Per_Color", bits),
     }
 }

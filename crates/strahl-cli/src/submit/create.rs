@@ -56,7 +56,7 @@ const NOT_FOR_TASKS: [&str; 15] = [
 ];
 
 /// Options of `render` for the file of the picture, which the merge writes.
-const OF_PICTURES: [&str; 3] = ["picture_format", "bit_depth", "jpeg_quality"];
+const OF_PICTURES: [&str; 4] = ["picture_format", "bit_depth", "grayscale", "jpeg_quality"];
 
 /// The clock for the look: the time of the thread, which other programs on the machine don't disturb, or else the time of day.
 struct Clock(Instant);

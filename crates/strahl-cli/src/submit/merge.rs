@@ -128,6 +128,7 @@ fn write(job: &Job, merged: &Merged, file: &Path) -> Result<(), Failure> {
     };
     let options = WriteOptions {
         bit_depth: args.bit_depth,
+        grayscale: args.grayscale,
         jpeg_quality: args.jpeg_quality,
         ..WriteOptions::default()
     };

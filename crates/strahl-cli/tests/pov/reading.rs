@@ -50,11 +50,36 @@ fn a_scene_comes_from_the_standard_input() {
 }
 
 #[test]
+fn scenes_of_switches_have_any_ending() {
+    let folder = folder();
+    let f = folder.path();
+    for (name, picture) in [
+        ("noext", "noext.png"),
+        ("weird.txt", "weird.png"),
+        ("head.inc", "head.png"),
+    ] {
+        write(f, name, SCENE);
+        succeeds(f, &[&format!("+I{name}"), "+W4", "+H3"]);
+        assert_eq!(size(f, picture), (4, 3));
+    }
+    write(f, "run.ini", "Input_File_Name=weird.txt\n+W5 +H3\n");
+    succeeds(f, &["run.ini"]);
+    assert_eq!(size(f, "weird.png"), (5, 3));
+    // Without the switch the name must tell the format.
+    fails(f, &["weird.txt", "+W4", "+H3"], 1, &["weird.txt"]);
+    fails(f, &["+Inone", "+W4", "+H3"], 1, &["none.pov"]);
+}
+
+#[test]
 fn without_a_scene_there_is_a_demonstration() {
     let folder = folder();
     let said = succeeds(folder.path(), &["render", "--size", "32x24"]);
     assert_eq!(size(folder.path(), "demo.png"), (32, 24));
     assert!(!said.contains("warning"), "{said}");
+    write(folder.path(), "size.ini", "Width=8\n");
+    for words in [&["size.ini"][..], &["+W8", "+H6"], &["render", "Width=8"]] {
+        fails(folder.path(), words, 2, &["no scene", "+Iscene.pov"]);
+    }
 }
 
 #[test]

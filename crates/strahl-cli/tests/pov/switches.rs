@@ -1,7 +1,7 @@
 //! POV-Ray's switches and .ini files.
 
 use super::common::{stderr, strahl};
-use super::{fails, folder, size, succeeds, write};
+use super::{fails, folder, pictures, size, succeeds, write};
 
 #[test]
 fn povray_switches_render() {
@@ -47,12 +47,8 @@ fn ini_files_have_sections() {
     assert_eq!(size(f, "later.png"), (5, 3));
     let parts = ["run.ini:10", "Widht", "`Width`"];
     fails(f, &["render", "run.ini[broken]"], 2, &parts);
-    fails(
-        f,
-        &["render", "run.ini[none]"],
-        2,
-        &["[none]", "Small, Broken"],
-    );
+    let said = succeeds(f, &["render", "run.ini[none]"]);
+    assert!(said.contains("no section [none]") && said.contains("Small, Broken"));
 }
 
 #[test]
@@ -109,8 +105,16 @@ fn pictures_of_povs_types_are_written() {
         let bytes = std::fs::read(f.join(name)).expect(name);
         assert!(bytes.starts_with(magic), "{name}");
     }
+    succeeds(f, &["+Iscene.pov", "+W8", "+H6", "+FNG", "+Ogrey"]);
+    let bytes = std::fs::read(f.join("grey.png")).expect("written");
+    assert_eq!(bytes[24..26], [16, 0], "bits, grey");
+    let parts = ["--grayscale", ".png, .ppm"];
+    let words = ["+Iscene.pov", "+W8", "+H6", "Grayscale_Output=on", "+FJ"];
+    fails(f, &words, 1, &parts);
     let output = strahl(f, &["+Iscene.pov", "+W8", "+H6", "+O-", "+FP", "-GA"]);
     assert!(output.stdout.starts_with(b"P6"), "{}", stderr(&output));
+    let output = strahl(f, &["+Iscene.pov", "+W8", "+H6", "+Ostdout"]);
+    assert!(output.stdout.starts_with(b"\x89PNG"), "{}", stderr(&output));
     let output = strahl(
         f,
         &["scene.pov", "--size", "8x6", "-o", "-", "--stats", "s.json"],
@@ -138,6 +142,34 @@ fn pictures_of_povs_types_are_written() {
 }
 
 #[test]
+fn pictures_lie_beside_their_scenes() {
+    let folder = folder();
+    let f = folder.path();
+    std::fs::create_dir(f.join("scenes")).expect("a folder");
+    std::fs::rename(f.join("scene.pov"), f.join("scenes/a.pov")).expect("renamed");
+    write(f, "run.ini", "Input_File_Name=scenes/a.pov\n+W4 +H3\n");
+    let absolute = format!("+I{}", f.join("scenes/a.pov").display());
+    for words in [
+        &["+Iscenes/a.pov", "+W4", "+H3"][..],
+        &[&absolute, "+W4", "+H3"],
+        &["run.ini"],
+    ] {
+        succeeds(f, words);
+        assert_eq!(size(f, "scenes/a.png"), (4, 3), "{words:?}");
+        std::fs::remove_file(f.join("scenes/a.png")).expect("it was there");
+    }
+    succeeds(f, &["run.ini", "+KFF2"]);
+    assert_eq!(pictures(&f.join("scenes")), ["a1.png", "a2.png"]);
+    // strahl's own options decide about the rest of the name.
+    succeeds(f, &["run.ini", "--picture-format", "jpg"]);
+    assert!(f.join("scenes/a.jpg").exists());
+    assert!(pictures(f).is_empty());
+    succeeds(f, &["run.ini", "+O./"]);
+    succeeds(f, &["run.ini", "-o", "b.png"]);
+    assert_eq!(pictures(f), ["a.png", "b.png"]);
+}
+
+#[test]
 fn what_is_left_out_is_noted() {
     let folder = folder();
     let f = folder.path();
@@ -156,6 +188,20 @@ fn what_is_left_out_is_noted() {
         assert!(said.contains(part), "{said}");
     }
     assert!(!f.join("log.txt").exists());
+    // Settings of old povray.ini files.
+    write(
+        f,
+        "old.ini",
+        "Histogram_Type=CSV\nHistogram_Name=h.csv\nHistogram_Grid_Size=4.3\nCreate_Histogram=on\n+W4 +H3\n",
+    );
+    let words = ["old.ini", "+Iscene.pov", "+B", "-B", "+B100", "-RTR"];
+    let said = succeeds(f, &words);
+    assert_eq!(said.matches("histograms are not written").count(), 1);
+    assert!(!said.contains("real time"), "{said}");
+    for word in ["+RTR", "Real_Time_Raytracing=on"] {
+        let said = succeeds(f, &["+Iscene.pov", "+W4", "+H3", word]);
+        assert!(said.contains("real time"), "{said}");
+    }
     fails(
         f,
         &["+Iscene.pov", "+W4", "+H3", "Dither=on", "--strict"],
@@ -219,12 +265,13 @@ fn quality_is_a_switch_and_an_option() {
         told.contains("(255, 0, 0)") && told.contains("quality 0 leaves out: light, shadows"),
         "{told}"
     );
-    for bad in ["+Q12", "+Qx", "+Q", "Quality=-1"] {
+    assert_eq!(picture("twelve", &["+Q12"]), full);
+    for bad in ["+Qx", "+Q", "Quality=-1"] {
         fails(
             f,
             &["render", "quick.pov", bad],
             2,
-            &["Quality: expected a whole number from 0 to 11"],
+            &["Quality: expected a whole number from 0"],
         );
     }
     fails(
@@ -233,4 +280,15 @@ fn quality_is_a_switch_and_an_option() {
         2,
         &["expected a quality from 0 to 11, found `12`"],
     );
+}
+
+#[test]
+fn numbers_end_where_povray_ends_them() {
+    let folder = folder();
+    let f = folder.path();
+    let words = ["+Iscene.pov", "+W8", "+H6", "Clock=1/2", "Quality=9x"];
+    let said = succeeds(f, &words);
+    for part in ["clock 1.000", "`1/2` is read as 1", "`9x` is read as 9"] {
+        assert!(said.contains(part), "no `{part}` in {said}");
+    }
 }

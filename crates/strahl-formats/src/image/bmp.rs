@@ -6,7 +6,7 @@ use ::image::ExtendedColorType;
 use ::image::codecs::bmp::BmpEncoder;
 
 use super::jpeg::io_error;
-use super::png::push_codes;
+use super::png::push_samples;
 use super::{BitDepth, Picture, WriteOptions};
 
 pub(super) fn encode(
@@ -15,7 +15,7 @@ pub(super) fn encode(
     _options: &WriteOptions,
 ) -> io::Result<()> {
     let mut codes = Vec::with_capacity(3 * picture.rgb.len());
-    push_codes(picture.rgb, BitDepth::Eight, &mut codes);
+    push_samples(picture.rgb.as_flattened(), BitDepth::Eight, &mut codes);
     let window = picture.window;
     BmpEncoder::new(&mut writer)
         .encode(&codes, window.width, window.height, ExtendedColorType::Rgb8)

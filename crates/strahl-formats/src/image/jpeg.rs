@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use ::image::ExtendedColorType;
 use ::image::codecs::jpeg::{JpegEncoder, PixelDensity};
 
-use super::png::push_codes;
+use super::png::push_samples;
 use super::{BitDepth, Picture, WriteOptions};
 
 pub(super) fn encode(
@@ -14,7 +14,7 @@ pub(super) fn encode(
     options: &WriteOptions,
 ) -> io::Result<()> {
     let mut codes = Vec::with_capacity(3 * picture.rgb.len());
-    push_codes(picture.rgb, BitDepth::Eight, &mut codes);
+    push_samples(picture.rgb.as_flattened(), BitDepth::Eight, &mut codes);
     let mut encoder = JpegEncoder::new_with_quality(writer, options.jpeg_quality.clamp(1, 100));
     encoder.set_pixel_density(PixelDensity::dpi(72));
     let window = picture.window;

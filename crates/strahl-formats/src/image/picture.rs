@@ -257,6 +257,11 @@ pub enum BitDepth {
 pub struct WriteOptions {
     /// Bits per sample of PNG and PPM.
     pub bit_depth: BitDepth,
+    /// Stores grey values instead of colours: PNG and PPM, see [`FormatInfo::grayscale`]. The grey of a colour is 0.297 R + 0.589 G + 0.114 B
+    /// of the linear values, as in POV-Ray.
+    ///
+    /// [`FormatInfo::grayscale`]: super::FormatInfo::grayscale
+    pub grayscale: bool,
     /// Stores the colours of EXR as 16-bit floats, which keep 11 bits and reach 65504; larger values become 65504.
     /// Layers keep 32 bits.
     pub half: bool,
@@ -268,6 +273,7 @@ impl Default for WriteOptions {
     fn default() -> Self {
         Self {
             bit_depth: BitDepth::Eight,
+            grayscale: false,
             half: false,
             jpeg_quality: 85,
         }

@@ -33,9 +33,11 @@ fn encode_png(
 ) -> Result<(), EncodingError> {
     let window = picture.window;
     let mut encoder = Encoder::new(writer, window.width, window.height);
-    encoder.set_color(match picture.alpha {
-        Some(_) => ColorType::Rgba,
-        None => ColorType::Rgb,
+    encoder.set_color(match (options.grayscale, picture.alpha) {
+        (false, None) => ColorType::Rgb,
+        (false, Some(_)) => ColorType::Rgba,
+        (true, None) => ColorType::Grayscale,
+        (true, Some(_)) => ColorType::GrayscaleAlpha,
     });
     encoder.set_depth(match options.bit_depth {
         BitDepth::Eight => ::png::BitDepth::Eight,
@@ -62,8 +64,8 @@ fn encode_png(
 
     let width = window.width as usize;
     let push_row = |y: usize, row: &[[f32; 3]], codes: &mut Vec<u8>| match picture.alpha {
-        Some(alpha) => push_straight(row, &alpha[y * width..], options.bit_depth, codes),
-        None => push_codes(row, options.bit_depth, codes),
+        Some(alpha) => push_straight(row, &alpha[y * width..], options, codes),
+        None => push_codes(row, options, codes),
     };
     let rows = picture.rgb.chunks_exact(width).enumerate();
     let mut codes = Vec::new();
@@ -79,8 +81,22 @@ fn encode_png(
 }
 
 /// Appends the sRGB codes of pixels, those of 16 bit with the high byte first, as PNG and PPM store them.
-pub(super) fn push_codes(pixels: &[[f32; 3]], depth: BitDepth, codes: &mut Vec<u8>) {
-    let samples = pixels.as_flattened();
+pub(super) fn push_codes(pixels: &[[f32; 3]], options: &WriteOptions, codes: &mut Vec<u8>) {
+    if options.grayscale {
+        let greys: Vec<f32> = pixels.iter().copied().map(grey).collect();
+        push_samples(&greys, options.bit_depth, codes);
+    } else {
+        push_samples(pixels.as_flattened(), options.bit_depth, codes);
+    }
+}
+
+/// The grey value of a colour. The weights are those of POV-Ray, measured.
+fn grey([red, green, blue]: [f32; 3]) -> f32 {
+    0.297 * red + 0.589 * green + 0.114 * blue
+}
+
+/// Appends the codes of samples.
+pub(super) fn push_samples(samples: &[f32], depth: BitDepth, codes: &mut Vec<u8>) {
     match depth {
         BitDepth::Eight => srgb::push_u8(samples, codes),
         BitDepth::Sixteen => codes.extend(
@@ -92,12 +108,12 @@ pub(super) fn push_codes(pixels: &[[f32; 3]], depth: BitDepth, codes: &mut Vec<u
 }
 
 /// Appends the codes of pixels with alpha. In PNG, colours are straight: not multiplied by alpha.
-fn push_straight(pixels: &[[f32; 3]], alpha: &[f32], depth: BitDepth, codes: &mut Vec<u8>) {
+fn push_straight(pixels: &[[f32; 3]], alpha: &[f32], options: &WriteOptions, codes: &mut Vec<u8>) {
     for (pixel, alpha) in pixels.iter().zip(alpha) {
         let straight = pixel.map(|x| if *alpha > 0.0 { x / alpha } else { 0.0 });
-        push_codes(&[straight], depth, codes);
+        push_codes(&[straight], options, codes);
         let alpha = f64::from(alpha.clamp(0.0, 1.0));
-        match depth {
+        match options.bit_depth {
             BitDepth::Eight => codes.push((alpha * 255.0 + 0.5) as u8),
             BitDepth::Sixteen => codes.extend(((alpha * 65535.0 + 0.5) as u16).to_be_bytes()),
         }

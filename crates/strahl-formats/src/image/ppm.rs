@@ -1,4 +1,4 @@
-//! Portable pixmaps (Netpbm's raw `P6`): 8 or 16 bit, with the sRGB transfer function every viewer assumes.
+//! Portable pixmaps (Netpbm's raw `P6`, or `P5` for grey values): 8 or 16 bit, with the sRGB transfer function every viewer assumes.
 
 use std::io::{self, Write};
 
@@ -15,16 +15,17 @@ pub(super) fn encode(
         BitDepth::Eight => u8::MAX.into(),
         BitDepth::Sixteen => u16::MAX,
     };
+    let magic = if options.grayscale { "P5" } else { "P6" };
     let comments = picture.comments();
     write!(
         writer,
-        "P6\n{comments}{} {}\n{largest}\n",
+        "{magic}\n{comments}{} {}\n{largest}\n",
         window.width, window.height
     )?;
     let mut codes = Vec::new();
     for row in picture.rgb.chunks_exact(window.width as usize) {
         codes.clear();
-        push_codes(row, options.bit_depth, &mut codes);
+        push_codes(row, options, &mut codes);
         writer.write_all(&codes)?;
     }
     Ok(())

@@ -121,6 +121,32 @@ fn integer_formats_hold_the_srgb_codes() {
     }
 }
 
+/// The expected values are those of POV-Ray 3.7 with `+FNG`.
+#[test]
+fn grey_pictures_have_one_channel() {
+    let rgb = [[1.0, 0.0, 0.0], [0.2, 0.5, 0.8], [2.0; 3], [3.0, 0.1, 0.0]];
+    let expected = [0.581155, 0.697963, 1.0, 0.977646].map(|x: f64| (x * 65535.0).round() as u16);
+    let options = WriteOptions {
+        grayscale: true,
+        ..with_bits(BitDepth::Sixteen)
+    };
+    for format in [ImageFormat::Png, ImageFormat::Ppm] {
+        let bytes = encoded(format, &Picture::new(4, 1, &rgb), &options);
+        let back = ::image::load_from_memory(&bytes).unwrap();
+        let pairs = back.as_luma16().unwrap().as_raw().iter().zip(expected);
+        assert!(pairs.clone().all(|(a, b)| a.abs_diff(b) <= 1), "{pairs:?}");
+    }
+    let alpha = [1.0, 1.0, 1.0, 0.5];
+    let picture = Picture {
+        alpha: Some(&alpha),
+        ..Picture::new(4, 1, &rgb)
+    };
+    let bytes = encoded(ImageFormat::Png, &picture, &options);
+    let back = ::image::load_from_memory(&bytes).unwrap();
+    let codes = back.as_luma_alpha16().unwrap().as_raw();
+    assert_eq!((codes[1], codes[7]), (65535, 32768));
+}
+
 /// Large pictures are compressed row by row, others at once.
 #[test]
 fn png_pictures_of_all_sizes_hold_the_same_rows() {
