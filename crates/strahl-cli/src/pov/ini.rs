@@ -48,8 +48,8 @@ pub(super) fn apply(
     let shown = file.display();
     let bytes = std::fs::read(file).map_err(|e| format!("cannot read `{shown}`: {e}"))?;
     let text = String::from_utf8_lossy(&bytes);
-    let is_file = |open: &PathBuf| open.canonicalize().ok() == file.canonicalize().ok();
-    if settings.open.iter().any(is_file) {
+    let is_this = |open: &PathBuf| open.canonicalize().ok() == file.canonicalize().ok();
+    if settings.open.iter().any(is_this) {
         return Err(format!(
             "`{shown}` includes itself, directly or by another file"
         ));
