@@ -286,3 +286,25 @@ fn numbers_of_distributions_are_povrays() {
     }
     assert_eq!(errors_of(&text), [""; 0]);
 }
+
+/// POV-Ray's boxes: those that are confined to the screen move evenly from gap to gap, and their middle is on the screen.
+#[test]
+fn screen_objects_stand_where_povrays_do() {
+    let cases = [
+        ("<0.5, 0.9>", "true", "<-0.125, 0.159, 0.995>"),
+        ("<0, 0>", "true", "<-0.646667, -0.48, 0.995>"),
+        ("<1, 1>", "true", "<0.396667, 0.23, 0.995>"),
+        ("<-0.5, 2>", "true", "<-1.168333, 0.94, 0.995>"),
+        ("<0.25, 0.75>", "false", "<-0.433333, 0.05, 1>"),
+    ];
+    let mut text = String::from(
+        "#include \"screen.inc\" Set_Camera_Aspect(4, 3) #declare B = box { <-0.1, -0.2, 0>, <0.15, 0.05, 0.01> }",
+    );
+    for (place, confine, low) in cases {
+        text += &format!(
+            "#declare O = object {{ Screen_Object(B, {place}, <0.02, 0.02>, {confine}, 0.01) }}
+            #if (vlength(min_extent(O)/0.01 - {low}) > 1e-5) #error concat(\"{place}: \", vstr(3, min_extent(O)/0.01, \", \", 0, 6)) #end\n"
+        );
+    }
+    assert_eq!(errors_of(&text), [""; 0]);
+}
