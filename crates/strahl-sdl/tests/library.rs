@@ -308,3 +308,69 @@ fn screen_objects_stand_where_povrays_do() {
     }
     assert_eq!(errors_of(&text), [""; 0]);
 }
+
+/// Where POV-Ray's rays meet the height fields of `shapes.inc`, and the normals there.
+#[test]
+fn height_fields_of_shapes_inc_are_povrays_meshes() {
+    let cases = [
+        (
+            "HF_Square(F, 0, 0, <4, 5>, 1, \"\", <-1, -0.2, -1>, <1, 0.8, 1.5>)",
+            1,
+            "<0.199289, 0.250266, -0.098914>",
+            "<-0.21191, 0.97729, 0.00135>",
+        ),
+        (
+            "HF_Sphere(F, 1, 0, <6, 5>, 1, \"\", <0.1, 0.2, 0>, 1, 0.5)",
+            0,
+            "<-0.089906, 1.216352, -0.293270>",
+            "<0.63527, 0.70504, -0.31520>",
+        ),
+        (
+            "HF_Sphere(F, 1, 0, <6, 5>, 1, \"\", <0.1, 0.2, 0>, 1, 0.5)",
+            2,
+            "<0.597016, -0.030080, 0.448930>",
+            "<0.75806, -0.32832, 0.56351>",
+        ),
+        (
+            "HF_Cylinder(F, 0, 0, <6, 4>, 0, \"\", -<0.2, 1, 0.1>, <0.1, 1, 0.3>, 0.8, 0.3)",
+            1,
+            "<-0.321393, 0.444802, 0.696340>",
+            "<-0.50465, -0.28391, 0.81531>",
+        ),
+        (
+            "HF_Torus(F, 1, 0, <7, 6>, 1, \"\", 1, 0.5, 0.2)",
+            1,
+            "<-0.415247, 0.479867, 0.839687>",
+            "<0.07041, 0.99752, 0.00101>",
+        ),
+        (
+            "HF_Torus(F, 1, 0, <7, 6>, 1, \"\", 1, 0.5, 0.2)",
+            2,
+            "<0.884971, -0.233222, 0.847068>",
+            "<0.60394, -0.57379, 0.55320>",
+        ),
+    ];
+    let mut text = String::from(
+        "#include \"shapes.inc\"
+        #declare F = function(x, y, z) { sin(3*x)*0.3 + cos(5*y + 1)*0.3 + x*y*z*z/5 }\n",
+    );
+    for (object, turn, place, normal) in cases {
+        text += &format!(
+            "#declare N = <0, 0, 0>; #declare D = vrotate(<0.3, -1, 0.2>, {turn}*<70, 0, 40>);
+            #declare O = object {{ {object} }}
+            #declare P = trace(O, <0.2, 0.25, -0.1> - 5*D, D, N);
+            #if (vlength(P - {place}) > 2e-6 | vlength(N - {normal}) > 2e-5)
+                #error concat(\"{turn} {place}: \", vstr(3, P, \", \", 0, 6), \" \", vstr(3, N, \", \", 0, 5))
+            #end\n"
+        );
+    }
+    // A mesh in a file, included.
+    text += "HF_Square(F, 0, 1, <4, 5>, 1, \"mesh.txt\", <-1, -0.2, -1>, <1, 0.8, 1.5>)
+        #declare O =
+        #include \"mesh.txt\"
+        #declare P = trace(O, <0.2, 5, -0.1>, -y);
+        #declare O = HF_Square(F, 0, 1, <4, 5>, 1, \"\", <-1, -0.2, -1>, <1, 0.8, 1.5>)
+        #declare Q = trace(O, <0.2, 5, -0.1>, -y);
+        #if (vlength(P - Q) > 1e-5) #error \"the mesh in the file is another\" #end\n";
+    assert_eq!(errors_of(&text), [""; 0]);
+}
