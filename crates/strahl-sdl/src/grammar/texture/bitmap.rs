@@ -475,6 +475,8 @@ impl Parser<'_> {
                 self.take(token)?;
                 map.use_alpha = false;
             }
+            // It counts in a `bump_map` only (measured).
+            Some(Word::UseIndex) => self.take(token)?,
             Some(word @ (Word::Filter | Word::Transmit)) => {
                 self.take(token)?;
                 self.picture_transparency(map, file, word)?;
