@@ -244,13 +244,29 @@ fn files_are_written_and_read() {
         #read (R, C) #ifndef (R) #debug str(C, 0, 0) #end #fclose R";
     let parsed = parse_with(&mut host, text);
     assert!(parsed.scene.is_some(), "{:#?}", parsed.diagnostics);
-    assert_eq!(
-        host.written("out.txt").as_deref(),
-        Some(&b"a1.000000 <1.000000, 2.000000>b"[..])
-    );
+    assert_eq!(host.written("out.txt").as_deref(), Some(&b"a1 <1,2> b"[..]));
     assert_eq!(host.text(strahl_sdl::Stream::Debug), "1.5text4");
     assert!(errors("#fopen F \"missing.txt\" read")[0].contains("no file `missing.txt`"));
     assert!(errors("#write (F, 1)")[0].contains("not open for writing"));
+}
+
+/// As POV-Ray 3.7 writes them.
+#[test]
+fn numbers_in_files_have_six_digits() {
+    let mut host = MemoryHost::new();
+    let list = "1e5, 1e6, 123456, 999999.5, 0.0001, 0.00001, 1/7*1e-5, 1e15, 1e-100, true, -2.5, 1/3, 123456789, 2000/3";
+    let values: String = list.split(", ").map(|v| format!(", {v}, \"|\"")).collect();
+    let text = format!(
+        "#fopen W \"out.txt\" write #write (W{values}, <1, 2, 3, 4, 1/3>, -0.5*<1, 2>) #fclose W"
+    );
+    let parsed = parse_with(&mut host, &text);
+    assert!(parsed.scene.is_some(), "{:#?}", parsed.diagnostics);
+    let written = host.written("out.txt").expect("a file");
+    assert_eq!(
+        String::from_utf8_lossy(&written),
+        "100000|1e+06|123456|1e+06|0.0001|1e-05|1.42857e-06|1e+15|1e-100|1|-2.5|0.333333|1.23457e+08|666.667|\
+         <1,2,3,4,0.333333> <-0.5,-1> "
+    );
 }
 
 #[test]

@@ -229,3 +229,148 @@ fn circle_text_stands_where_povrays_does() {
     let errors: Vec<String> = errors.map(ToString::to_string).collect();
     assert!(errors.is_empty(), "{}", errors.join("\n"));
 }
+
+/// The errors of a scene's text and of the files that it may include.
+fn errors_of(text: &str) -> Vec<String> {
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let errors = parsed.diagnostics.iter().filter(|d| d.is_error());
+    errors.map(ToString::to_string).collect()
+}
+
+/// POV-Ray's numbers, each with the one that the stream gives next.
+#[test]
+fn numbers_of_distributions_are_povrays() {
+    let macros = [
+        "Rand_Normal(3, 2, A)",
+        "Rand_Student(3, A)",
+        "Rand_Student(5, A)",
+        "Rand_Chi_Square(3, A)",
+        "Rand_F_Dist(2, 5, A)",
+    ];
+    let seeds = [
+        (
+            1,
+            [
+                [2.895287606, 0.665896216],
+                [-1.195564007, 0.297774397],
+                [0.414795103, 0.625949437],
+                [2.501721725, 0.665896216],
+                [7.166690622, 0.297774397],
+            ],
+        ),
+        (
+            1234,
+            [
+                [4.560237055, 0.612337817],
+                [-0.149533799, 0.194746785],
+                [-2.166012507, 0.725293803],
+                [5.417099097, 0.612337817],
+                [8.667618354, 0.194746785],
+            ],
+        ),
+    ];
+    let mut text = String::from("#include \"rand.inc\"\n");
+    for (seed, values) in seeds {
+        for (number, [value, next]) in macros.iter().zip(values) {
+            // The second number of `Rand_Student` goes on with the stream of the first, of which a pair is half used.
+            if *number != "Rand_Student(5, A)" {
+                text += &format!("#declare A = seed({seed});\n");
+            }
+            text += &format!(
+                "#declare V = {number}; #declare N = rand(A);
+                #if (abs(V - {value}) > 1e-8 | abs(N - {next}) > 1e-8)
+                    #error concat(\"{number} of {seed}: \", str(V, 0, 9), \" \", str(N, 0, 9))
+                #end\n"
+            );
+        }
+    }
+    assert_eq!(errors_of(&text), [""; 0]);
+}
+
+/// POV-Ray's boxes: those that are confined to the screen move evenly from gap to gap, and their middle is on the screen.
+#[test]
+fn screen_objects_stand_where_povrays_do() {
+    let cases = [
+        ("<0.5, 0.9>", "true", "<-0.125, 0.159, 0.995>"),
+        ("<0, 0>", "true", "<-0.646667, -0.48, 0.995>"),
+        ("<1, 1>", "true", "<0.396667, 0.23, 0.995>"),
+        ("<-0.5, 2>", "true", "<-1.168333, 0.94, 0.995>"),
+        ("<0.25, 0.75>", "false", "<-0.433333, 0.05, 1>"),
+    ];
+    let mut text = String::from(
+        "#include \"screen.inc\" Set_Camera_Aspect(4, 3) #declare B = box { <-0.1, -0.2, 0>, <0.15, 0.05, 0.01> }",
+    );
+    for (place, confine, low) in cases {
+        text += &format!(
+            "#declare O = object {{ Screen_Object(B, {place}, <0.02, 0.02>, {confine}, 0.01) }}
+            #if (vlength(min_extent(O)/0.01 - {low}) > 1e-5) #error concat(\"{place}: \", vstr(3, min_extent(O)/0.01, \", \", 0, 6)) #end\n"
+        );
+    }
+    assert_eq!(errors_of(&text), [""; 0]);
+}
+
+/// Where POV-Ray's rays meet the height fields of `shapes.inc`, and the normals there.
+#[test]
+fn height_fields_of_shapes_inc_are_povrays_meshes() {
+    let cases = [
+        (
+            "HF_Square(F, 0, 0, <4, 5>, 1, \"\", <-1, -0.2, -1>, <1, 0.8, 1.5>)",
+            1,
+            "<0.199289, 0.250266, -0.098914>",
+            "<-0.21191, 0.97729, 0.00135>",
+        ),
+        (
+            "HF_Sphere(F, 1, 0, <6, 5>, 1, \"\", <0.1, 0.2, 0>, 1, 0.5)",
+            0,
+            "<-0.089906, 1.216352, -0.293270>",
+            "<0.63527, 0.70504, -0.31520>",
+        ),
+        (
+            "HF_Sphere(F, 1, 0, <6, 5>, 1, \"\", <0.1, 0.2, 0>, 1, 0.5)",
+            2,
+            "<0.597016, -0.030080, 0.448930>",
+            "<0.75806, -0.32832, 0.56351>",
+        ),
+        (
+            "HF_Cylinder(F, 0, 0, <6, 4>, 0, \"\", -<0.2, 1, 0.1>, <0.1, 1, 0.3>, 0.8, 0.3)",
+            1,
+            "<-0.321393, 0.444802, 0.696340>",
+            "<-0.50465, -0.28391, 0.81531>",
+        ),
+        (
+            "HF_Torus(F, 1, 0, <7, 6>, 1, \"\", 1, 0.5, 0.2)",
+            1,
+            "<-0.415247, 0.479867, 0.839687>",
+            "<0.07041, 0.99752, 0.00101>",
+        ),
+        (
+            "HF_Torus(F, 1, 0, <7, 6>, 1, \"\", 1, 0.5, 0.2)",
+            2,
+            "<0.884971, -0.233222, 0.847068>",
+            "<0.60394, -0.57379, 0.55320>",
+        ),
+    ];
+    let mut text = String::from(
+        "#include \"shapes.inc\"
+        #declare F = function(x, y, z) { sin(3*x)*0.3 + cos(5*y + 1)*0.3 + x*y*z*z/5 }\n",
+    );
+    for (object, turn, place, normal) in cases {
+        text += &format!(
+            "#declare N = <0, 0, 0>; #declare D = vrotate(<0.3, -1, 0.2>, {turn}*<70, 0, 40>);
+            #declare O = object {{ {object} }}
+            #declare P = trace(O, <0.2, 0.25, -0.1> - 5*D, D, N);
+            #if (vlength(P - {place}) > 2e-6 | vlength(N - {normal}) > 2e-5)
+                #error concat(\"{turn} {place}: \", vstr(3, P, \", \", 0, 6), \" \", vstr(3, N, \", \", 0, 5))
+            #end\n"
+        );
+    }
+    // A mesh in a file, included.
+    text += "HF_Square(F, 0, 1, <4, 5>, 1, \"mesh.txt\", <-1, -0.2, -1>, <1, 0.8, 1.5>)
+        #declare O =
+        #include \"mesh.txt\"
+        #declare P = trace(O, <0.2, 5, -0.1>, -y);
+        #declare O = HF_Square(F, 0, 1, <4, 5>, 1, \"\", <-1, -0.2, -1>, <1, 0.8, 1.5>)
+        #declare Q = trace(O, <0.2, 5, -0.1>, -y);
+        #if (vlength(P - Q) > 1e-5) #error \"the mesh in the file is another\" #end\n";
+    assert_eq!(errors_of(&text), [""; 0]);
+}

@@ -9,10 +9,10 @@ pub use substitute::substitutes;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::metrics::GlyphMetrics;
 use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlinePen};
-use skrifa::raw::tables::kern::SubtableKind;
+use skrifa::raw::tables::kern::{Subtable, SubtableKind};
 use skrifa::raw::{FileRef, TableProvider};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use strahl_geometry::{Outline, OutlineBuilder};
 use strahl_math::DVec2;
@@ -24,6 +24,8 @@ use strahl_math::DVec2;
 #[derive(Debug)]
 pub struct Font {
     bytes: Vec<u8>,
+    /// The kerning of pairs of glyphs, in units, from those parts of the table `kern` that list pairs.
+    pairs: BTreeMap<(u32, u32), i32>,
     glyphs: BTreeMap<u32, Option<Arc<Outline>>>,
     /// Lines that have been laid out, as the same ones often come again and finding the font's tables takes time.
     lines: BTreeMap<String, Vec<Letter>>,
@@ -53,8 +55,10 @@ impl Font {
             return Err(FontError::NoOutlines);
         }
         units(&font)?;
+        let pairs = listed_pairs(&font);
         Ok(Self {
             bytes,
+            pairs,
             glyphs: BTreeMap::new(),
             lines: BTreeMap::new(),
         })
@@ -80,7 +84,12 @@ impl Font {
     }
 
     fn lay_out_anew(&mut self, text: &str) -> Result<Vec<Letter>, FontError> {
-        let Self { bytes, glyphs, .. } = self;
+        let Self {
+            bytes,
+            pairs,
+            glyphs,
+            ..
+        } = self;
         let font = open(bytes)?;
         let unit = 1.0 / units(&font)?;
         let (charmap, outlines) = (font.charmap(), font.outline_glyphs());
@@ -90,7 +99,7 @@ impl Font {
         for character in text.chars() {
             let id = charmap.map(character).unwrap_or(GlyphId::NOTDEF);
             if let Some(before) = before {
-                x += f64::from(kerning(&font, before, id)) * unit;
+                x += f64::from(kerning(&font, pairs, before, id)) * unit;
             }
             let outline = match glyphs.get(&id.to_u32()) {
                 Some(known) => known.clone(),
@@ -136,22 +145,54 @@ fn advance(metrics: &GlyphMetrics<'_>, id: GlyphId) -> f64 {
     f64::from(metrics.advance_width(id).unwrap_or(0.0))
 }
 
-/// The kerning of two letters, in units.
-fn kerning(font: &FontRef<'_>, left: GlyphId, right: GlyphId) -> i32 {
-    let Ok(kern) = font.kern() else {
-        return 0;
-    };
-    let usable = kern
-        .subtables()
+/// The parts of the font's table `kern` that move letters of a horizontal line along it.
+fn kerning_tables<'a>(font: &FontRef<'a>) -> impl Iterator<Item = Subtable<'a>> {
+    let tables = font.kern().into_iter().flat_map(|kern| kern.subtables());
+    tables
         .filter_map(Result::ok)
-        .filter(|table| table.is_horizontal() && !table.is_cross_stream() && !table.is_variable());
-    let pairs = usable.filter_map(|table| match table.kind() {
-        Ok(SubtableKind::Format0(pairs)) => pairs.kerning(left, right),
+        .filter(|table| table.is_horizontal() && !table.is_cross_stream() && !table.is_variable())
+}
+
+/// The kerning of all pairs that are listed one by one (format 0).
+///
+/// The list should be sorted, but in some fonts, such as two of POV-Ray's, it isn't, so a binary search would miss pairs. Of a
+/// pair that one list has twice the first entry counts; entries of several lists are added.
+fn listed_pairs(font: &FontRef<'_>) -> BTreeMap<(u32, u32), i32> {
+    let mut all = BTreeMap::new();
+    for table in kerning_tables(font) {
+        let Ok(SubtableKind::Format0(list)) = table.kind() else {
+            continue;
+        };
+        let mut seen = BTreeSet::new();
+        for pair in list.pairs() {
+            let key = (
+                u32::from(pair.left().to_u16()),
+                u32::from(pair.right().to_u16()),
+            );
+            if seen.insert(key) {
+                let sum: &mut i32 = all.entry(key).or_default();
+                *sum = sum.saturating_add(i32::from(pair.value()));
+            }
+        }
+    }
+    all
+}
+
+/// The kerning of two letters, in units: `pairs` and the parts of the table `kern` that have classes of letters.
+fn kerning(
+    font: &FontRef<'_>,
+    pairs: &BTreeMap<(u32, u32), i32>,
+    left: GlyphId,
+    right: GlyphId,
+) -> i32 {
+    let key = (left.to_u32(), right.to_u32());
+    let listed = pairs.get(&key).copied().unwrap_or(0);
+    let classes = kerning_tables(font).filter_map(|table| match table.kind() {
         Ok(SubtableKind::Format2(pairs)) => pairs.kerning(left, right),
         Ok(SubtableKind::Format3(pairs)) => pairs.kerning(left, right),
         _ => None,
     });
-    pairs.sum()
+    classes.fold(listed, i32::saturating_add)
 }
 
 /// The outline of a glyph; `None` if it is empty.

@@ -2,6 +2,11 @@ use super::*;
 
 /// A font of three glyphs made by hand: a triangle for missing characters, a diamond with one curved side for `A`, and a space.
 pub(crate) fn tiny_font() -> Vec<u8> {
+    font_with_kerning(&[[1, 1, -50]])
+}
+
+/// The same font with other pairs in its table `kern`, each of two glyphs and a distance.
+fn font_with_kerning(pairs: &[[i32; 3]]) -> Vec<u8> {
     let be16 = |list: &[i32]| -> Vec<u8> {
         let bytes = list.iter().flat_map(|v| (*v as i16).to_be_bytes());
         bytes.collect()
@@ -37,7 +42,12 @@ pub(crate) fn tiny_font() -> Vec<u8> {
     maxp.extend(be16(&[3, 8, 2, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0]));
     let groups = be32(&[40, 0, 2, 32, 32, 2, 65, 65, 1]);
     let cmap = [be16(&[0, 1, 3, 10]), be32(&[12]), be16(&[12, 0]), groups].concat();
-    let kern = be16(&[0, 1, 0, 20, 1, 1, 6, 0, 0, 1, 1, -50]);
+    let count = pairs.len() as i32;
+    let kern = [
+        be16(&[0, 1, 0, 14 + 6 * count, 1, count, 6, 0, 0]),
+        be16(&pairs.concat()),
+    ]
+    .concat();
     let tables: [(&[u8; 4], Vec<u8>); 8] = [
         (b"cmap", cmap),
         (b"glyf", [triangle, diamond].concat()),
@@ -78,6 +88,28 @@ fn letters_stand_one_after_the_other() {
         .map(|letter| letter.outline.as_ref().map(|o| o.piece_count()))
         .collect();
     assert_eq!(sizes, [Some(3), Some(3), None, Some(3), Some(3)]);
+}
+
+#[test]
+fn all_pairs_of_an_unsorted_kerning_table_count() {
+    let pairs = [
+        [2, 1, -10],
+        [1, 2, -20],
+        [1, 1, -50],
+        [0, 1, -40],
+        [1, 1, 7],
+    ];
+    let mut font = Font::parse(font_with_kerning(&pairs)).unwrap();
+    let letters = font.lay_out("AA A?A").unwrap();
+    let places: Vec<f64> = letters.iter().map(|letter| letter.x).collect();
+    let expected = [0.0, 0.55, 1.13, 1.37, 1.97, 2.43];
+    assert!(
+        places
+            .iter()
+            .zip(expected)
+            .all(|(a, b)| (a - b).abs() < 1e-12),
+        "{places:?}"
+    );
 }
 
 #[test]

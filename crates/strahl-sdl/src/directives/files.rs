@@ -127,10 +127,11 @@ impl Parser<'_> {
                 }
                 _ => match self.value()? {
                     Value::String(s) => text.push_str(&s),
-                    Value::Float(x) => text.push_str(&format!("{x:.6}")),
+                    Value::Float(x) => text.push_str(&six_digits(x)),
                     Value::Vector(v) => {
-                        let numbers = v.as_slice().iter().map(|x| format!("{x:.6}"));
-                        text.push_str(&format!("<{}>", numbers.collect::<Vec<_>>().join(", ")));
+                        let numbers = v.as_slice().iter().map(|x| six_digits(*x));
+                        // POV-Ray writes a space after each vector (measured).
+                        text.push_str(&format!("<{}> ", numbers.collect::<Vec<_>>().join(",")));
                     }
                     other => {
                         let message = format!("{} cannot be written to a file", other.describe());
@@ -284,4 +285,30 @@ impl Reader<'_> {
             _ => None,
         }
     }
+}
+
+/// A number as `#write` writes it: with up to six digits, and with an exponent if it is below 0.0001 or has more than six digits
+/// before the point (measured).
+fn six_digits(x: f64) -> String {
+    if !x.is_finite() {
+        return x.to_string().to_lowercase();
+    }
+    let text = format!("{x:.5e}");
+    let Some((digits, exponent)) = text.split_once('e') else {
+        return text;
+    };
+    let exponent: i32 = exponent.parse().unwrap_or_default();
+    let without_zeros = |digits: &str| match digits.contains('.') {
+        true => digits
+            .trim_end_matches('0')
+            .trim_end_matches('.')
+            .to_owned(),
+        false => digits.to_owned(),
+    };
+    if (-4..6).contains(&exponent) {
+        let places = usize::try_from(5 - exponent).unwrap_or_default();
+        return without_zeros(&format!("{x:.places$}"));
+    }
+    let sign = if exponent < 0 { '-' } else { '+' };
+    format!("{}e{sign}{:02}", without_zeros(digits), exponent.abs())
 }

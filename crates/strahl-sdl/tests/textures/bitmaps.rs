@@ -5,7 +5,9 @@ use crate::common::parse_with;
 use strahl_math::DVec3;
 use strahl_sdl::MemoryHost;
 use strahl_shade::Color;
+use strahl_shade::normal::NormalKind;
 use strahl_shade::patterns::TexturePoint;
+use strahl_shade::texture::Texture;
 
 /// A BMP of 2 x 1 texels with a palette whose entries have the same colour.
 fn picture_with_a_palette() -> Vec<u8> {
@@ -179,6 +181,41 @@ fn entries_of_a_palette_filter_and_transmit() {
             let near = (0..2).all(|i| (seen[i] - expected[i]).abs() < 1e-15);
             assert!(near, "{items} at {x}: {seen:?}, not {expected:?}");
         }
+    }
+}
+
+/// Heights by index are the numbers of entries in the palette, as in POV-Ray 3.7, and the last of `use_index` and `use_color`
+/// counts. Pictures without a palette have the heights of their colours.
+#[test]
+fn bump_maps_use_the_index_in_a_palette() {
+    let gray = [9.0 / 255.0; 2];
+    for (file, items, expected) in [
+        ("codes.bmp", "", gray),
+        ("codes.bmp", "use_index", [0.0, 1.0]),
+        ("codes.bmp", "use_color use_index bump_size 2", [0.0, 1.0]),
+        ("codes.bmp", "use_index use_colour", gray),
+        ("grays.pgm", "use_index", [0.2, 0.6]),
+    ] {
+        let mut host = MemoryHost::new()
+            .with_file("codes.bmp", picture_with_a_palette())
+            .with_file("grays.pgm", b"P5\n2 1\n255\n\x33\x99".to_vec());
+        let kind = &file[file.len() - 3..];
+        let map = format!("bump_map {{ {kind} \"{file}\" {items} }}");
+        let parsed = parse_with(&mut host, &format!("sphere {{ 0, 1 normal {{ {map} }} }}"));
+        assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics);
+        let scene = parsed.scene.expect("a scene");
+        let material = scene.objects.0[0].material.as_ref().unwrap();
+        let texture = material.texture.clone().unwrap().0;
+        let Texture::Plain(plain) = &*texture else {
+            panic!("{texture:?}")
+        };
+        let Some(NormalKind::BumpMap(image)) = plain.normal.as_ref().map(|normal| &normal.kind)
+        else {
+            panic!("{plain:?}")
+        };
+        let heights = [0.25, 0.75].map(|x| image.gray(DVec3::new(x, 0.5, 0.0)));
+        let near = (0..2).all(|i| (heights[i] - expected[i]).abs() < 1e-6);
+        assert!(near, "{file} {items}: {heights:?}, not {expected:?}");
     }
 }
 

@@ -6,7 +6,7 @@ use crate::parser::{PResult, Parser, Place, has_ending};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
 use strahl_formats::image::{
-    PictureCodes, TextureUse, decode_heights, decode_texture, picture_codes,
+    PictureCodes, TextureUse, decode_heights, decode_indices, decode_texture, picture_codes,
 };
 use strahl_function::Cost;
 use strahl_math::DVec3;
@@ -93,19 +93,70 @@ impl Parser<'_> {
 
     /// The braces of `bump_map`, with the `bump_size` in them.
     pub(super) fn bump_bitmap(&mut self) -> PResult<(Option<Arc<ImageMap>>, Option<f64>)> {
-        let mut size = None;
+        let (mut size, mut by_index, mut file) = (None, false, None);
         let image = self.bitmap(
-            |p| p.picture_file(Purpose::Data),
+            |p| {
+                let picture = p.picture_file(Purpose::Data)?;
+                file = picture.as_ref().and_then(|(_, file)| file.clone());
+                Ok(picture)
+            },
             |p, _, token| {
-                if !token.is(Word::BumpSize) {
-                    return Ok(false);
+                match token.word() {
+                    Some(Word::BumpSize) => {
+                        p.take(token)?;
+                        size = Some(p.float()?);
+                    }
+                    Some(word @ (Word::UseIndex | Word::UseColor | Word::UseColour)) => {
+                        p.take(token)?;
+                        by_index = word == Word::UseIndex;
+                    }
+                    _ => return Ok(false),
                 }
-                p.take(token)?;
-                size = Some(p.float()?);
                 Ok(true)
             },
         )?;
-        Ok((image, size))
+        let (Some(map), true, Some(file)) = (&image, by_index, file) else {
+            return Ok((image, size));
+        };
+        Ok(match self.heights_by_index(file)? {
+            Some(heights) => {
+                let map = ImageMap {
+                    image: Arc::new(heights),
+                    palette: None,
+                    filter_all: 0.0,
+                    transmit_all: 0.0,
+                    ..ImageMap::clone(map)
+                };
+                (Some(Arc::new(map)), size)
+            }
+            None => (image, size),
+        })
+    }
+
+    /// The heights of a picture with `use_index`; `None` if it has no palette, for which POV-Ray uses its colours.
+    ///
+    /// The height is the number of the entry in the palette, from 0 to 255, whatever the size of the palette (measured); the
+    /// height of colours goes from 0 to 1 only.
+    fn heights_by_index(&mut self, file: PictureFile) -> PResult<Option<TextureImage>> {
+        let (name, place) = file;
+        let file = self.read_file(&name, place)?;
+        let indexed = match decode_indices(&file.bytes, &name) {
+            Ok(Some(indexed)) => indexed,
+            Ok(None) => return Ok(None),
+            Err(error) => return Err(self.fail(place, error.to_string())),
+        };
+        let heights = indexed.indices.iter().map(|index| f32::from(*index));
+        let image = TextureImage::try_new(
+            indexed.width,
+            indexed.height,
+            TexelChannels::Gray,
+            ColorSpace::Linear,
+            TexelData::F32(heights.collect()),
+        );
+        match image {
+            Ok(image) => Ok(Some(image)),
+            Err(error) => Err(self.fail(place, error.to_string())),
+        }
     }
 
     /// The braces of `material_map`; `other` reads items that do not belong to the picture.
@@ -158,7 +209,7 @@ impl Parser<'_> {
             let file = file.flatten();
             let mut map = ImageMap::new(image.unwrap_or_else(blank));
             p.items("the picture", |p, token| {
-                if p.bitmap_item(&mut map, file.as_ref(), token)? || other(p, &mut map, token)? {
+                if other(p, &mut map, token)? || p.bitmap_item(&mut map, file.as_ref(), token)? {
                     return Ok(());
                 }
                 p.skip_item(token, "the picture")
@@ -457,6 +508,8 @@ impl Parser<'_> {
                 self.take(token)?;
                 map.use_alpha = false;
             }
+            // It counts in a `bump_map` only (measured).
+            Some(Word::UseIndex) => self.take(token)?,
             Some(word @ (Word::Filter | Word::Transmit)) => {
                 self.take(token)?;
                 self.picture_transparency(map, file, word)?;
