@@ -2,7 +2,7 @@
 //! xtask looks`).
 
 use crate::common::{parse_with, tool};
-use crate::plates::{Name, Sheet};
+use crate::plates::{self, Name, Sheet};
 use std::collections::{BTreeMap, BTreeSet};
 use strahl_render::{CompileOptions, RenderOptions, compile, render};
 use strahl_sdl::MemoryHost;

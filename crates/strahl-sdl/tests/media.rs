@@ -1,6 +1,8 @@
 //! The media that rays are in, and their absorption: one pixel of each scene of `data/media.tsv`, which has the values of POV-Ray
 //! 3.7.
 
+use crate::groups;
+
 groups! {
     include_str!("data/media.tsv");
     the_eye_is_in_all_that_contains_it,

@@ -1,6 +1,8 @@
 //! The directions of reflection and transparency rays, and when they are cut: one pixel of each scene of `data/mirrors.tsv`, which has the
 //! values of POV-Ray 3.7.
 
+use crate::groups;
+
 groups! {
     include_str!("data/mirrors.tsv");
     an_interpolated_normal_is_turned_to_the_viewer,

@@ -1,5 +1,7 @@
 //! What random scenes (`cargo xtask differ`) have found: one pixel of each scene of `data/random.tsv`, which has the values of POV-Ray 3.7.
 
+use crate::groups;
+
 groups! {
     include_str!("data/random.tsv");
     a_layer_vanishes_below_adc_bailout,

@@ -1,5 +1,7 @@
 //! Textures with `uv_mapping`: one pixel of each scene of `data/texture_coordinates.tsv`, which has the values of POV-Ray 3.7.
 
+use crate::groups;
+
 groups! {
     include_str!("data/texture_coordinates.tsv");
     surfaces_with_coordinates_of_their_own,

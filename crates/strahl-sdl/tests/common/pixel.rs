@@ -66,12 +66,12 @@ macro_rules! groups {
     ($cases:expr; $($group:ident,)+) => {
         $(#[test]
         fn $group() {
-            common::pixel::agree($cases, stringify!($group));
+            $crate::common::pixel::agree($cases, stringify!($group));
         })+
 
         #[test]
         fn every_group_has_a_test() {
-            common::pixel::all_named($cases, &[$(stringify!($group)),+]);
+            $crate::common::pixel::all_named($cases, &[$(stringify!($group)),+]);
         }
     };
 }
