@@ -120,8 +120,14 @@ impl Parser<'_> {
         };
         Ok(match self.heights_by_index(file)? {
             Some(heights) => {
+                // The cubic interpolation limits values to 1, as colours need it.
+                let interpolation = match map.interpolation {
+                    Interpolation::Bicubic => Interpolation::Bilinear,
+                    other => other,
+                };
                 let map = ImageMap {
                     image: Arc::new(heights),
+                    interpolation,
                     palette: None,
                     filter_all: 0.0,
                     transmit_all: 0.0,
