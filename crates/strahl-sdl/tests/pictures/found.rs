@@ -235,7 +235,7 @@ fn versions_before_3_5_have_their_noise_and_layers() {
 /// Without an alpha channel the transmit of the background shows black, but its filter does not.
 #[test]
 fn backgrounds_that_transmit_are_dark() {
-    let things = "sphere { -x, 0.5 pigment { rgb 0 } finish { ambient 0 diffuse 0 reflection 1 } }
+    let things = "sphere { -x, 0.5 pigment { rgb 0.1 } finish { ambient 1 diffuse 0 reflection 1 } }
         box { <0.2, -0.5, 0>, <1.2, 0.5, 1> pigment { rgbt <1, 1, 1, 0.5> } finish { ambient 0 diffuse 0 } hollow }";
     let mut scenes = vec![];
     for color in [
