@@ -51,13 +51,13 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
         } else if is_switch(text) {
             foreign = true;
             switches::apply(text, &mut settings)?;
+        } else if let Some((key, value)) = assignment(text) {
+            foreign = true;
+            settings.set(key, ini::unquoted(value))?;
         } else if let Some((file, section)) = ini::named(text).or_else(|| ini::without_ending(text))
         {
             foreign = true;
             ini::apply(&file, section.as_deref(), &mut settings)?;
-        } else if let Some((key, value)) = assignment(text) {
-            foreign = true;
-            settings.set(key, ini::unquoted(value))?;
         } else if text.starts_with('-') && text != "-" {
             own.push(word.clone());
         } else {
@@ -406,6 +406,10 @@ mod tests {
             ("a.pov +FTG", "`G`"),
             ("a.pov Declare=X", "`X`"),
             ("missing.ini", "missing.ini"),
+            (
+                "Include_Ini=missing.ini",
+                "Include_Ini: cannot read `missing.ini`",
+            ),
             ("+W8 +H6", "Input_File_Name=scene.pov"),
             ("Width=8 --size 8x6", "no scene"),
         ] {
