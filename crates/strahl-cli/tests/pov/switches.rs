@@ -98,7 +98,7 @@ fn pictures_of_povs_types_are_written() {
         ("+FB", "scene.bmp", &b"BM"[..]),
         ("+FJ", "scene.jpg", &[0xff, 0xd8, 0xff]),
         ("+FP", "scene.ppm", b"P6"),
-        ("+FT", "scene.tga", &[0, 0, 10]),
+        ("+FT", "scene.tga", &[0, 0, 2]),
         ("+FE", "scene.exr", &[0x76, 0x2f, 0x31, 1]),
     ] {
         succeeds(f, &["+Iscene.pov", "+W8", "+H6", switch]);
