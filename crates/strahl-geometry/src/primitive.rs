@@ -193,6 +193,12 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
         self.closest_hit(ray, range, from, scratch).is_some()
     }
 
+    /// Whether rays should be tested for the box around the shape before they are for the shape, where they have not met that box yet: because the
+    /// shape's own test takes ten times as long, and does not begin with a box.
+    fn wants_box(&self) -> bool {
+        false
+    }
+
     /// Appends all hits in `range` to `out`: those that [`Primitive::closest_hit`] finds one behind the other.
     fn all_hits(
         &self,
@@ -322,6 +328,10 @@ impl<P: Primitive + ?Sized> Primitive for Arc<P> {
         scratch: &mut Scratch,
     ) -> bool {
         (**self).any_hit(ray, range, from, scratch)
+    }
+
+    fn wants_box(&self) -> bool {
+        (**self).wants_box()
     }
 
     fn all_hits(

@@ -53,6 +53,10 @@ macro_rules! shapes {
                 match self { $(Self::$variant(shape) => shape.any_hit(ray, range, from, scratch),)+ }
             }
 
+            fn wants_box(&self) -> bool {
+                match self { $(Self::$variant(shape) => shape.wants_box(),)+ }
+            }
+
             fn all_hits(
                 &self,
                 ray: &Ray,

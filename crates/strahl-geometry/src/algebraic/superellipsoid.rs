@@ -349,6 +349,10 @@ impl Primitive for Superellipsoid {
         check_positive("second number (n) of the superellipsoid", self.n)
     }
 
+    fn wants_box(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Aabb {
         let reach = DVec3::splat(1.0 + 4.0 * self.gauge.error());
         Aabb::new(-reach, reach)

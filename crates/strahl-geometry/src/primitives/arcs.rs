@@ -496,6 +496,10 @@ macro_rules! made_of_arcs {
                 self.check()
             }
 
+            fn wants_box(&self) -> bool {
+                true
+            }
+
             fn bounds(&self) -> Aabb {
                 self.body.bounds()
             }

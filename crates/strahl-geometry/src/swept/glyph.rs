@@ -83,6 +83,10 @@ impl Primitive for Glyph {
         })
     }
 
+    fn wants_box(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Aabb {
         let Aabb { min, max } = self.extrusion().bounds();
         Aabb::new(self.origin + min, self.origin + max)

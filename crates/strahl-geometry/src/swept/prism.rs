@@ -143,6 +143,10 @@ impl Primitive for Prism {
         })
     }
 
+    fn wants_box(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Aabb {
         let Aabb { min, max } = self.extrusion().bounds();
         Aabb::new(turned(min), turned(max))

@@ -177,6 +177,10 @@ impl Primitive for SphereSweep {
         })
     }
 
+    fn wants_box(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Aabb {
         self.bounds
     }

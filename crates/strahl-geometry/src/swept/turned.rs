@@ -26,6 +26,10 @@ macro_rules! turned_about_the_axis {
                 })
             }
 
+            fn wants_box(&self) -> bool {
+                true
+            }
+
             fn bounds(&self) -> Aabb {
                 Revolution(&self.meridian).bounds()
             }

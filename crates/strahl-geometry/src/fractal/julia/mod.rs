@@ -214,6 +214,10 @@ impl Primitive for Julia {
         Ok(())
     }
 
+    fn wants_box(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Aabb {
         self.search.bounds()
     }

@@ -437,6 +437,10 @@ impl Primitive for Isosurface {
         Ok(())
     }
 
+    fn wants_box(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Aabb {
         self.container.bounds()
     }
