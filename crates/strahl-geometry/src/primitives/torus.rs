@@ -318,6 +318,9 @@ impl Torus {
     fn segment(&self, ray: &Ray, on_surface: bool) -> Option<Segment> {
         let d = ray.direction;
         let f = ray.origin - self.center;
+        if !on_surface && self.is_passed(f, d) {
+            return None;
+        }
         let a = d.dot(d);
         // From the closest approach to the centre on, every length is of the size of the torus.
         let shift = if on_surface { 0.0 } else { -f.dot(d) / a };
@@ -359,6 +362,25 @@ impl Torus {
             low: (low - base) / length,
             high: (high - base) / length,
         })
+    }
+
+    /// Whether a line, given by a point relative to the centre and a direction, certainly goes through the hole of the ring: it enters and leaves the
+    /// slab in which the torus lies within the cylinder that fills the hole, which is convex.
+    #[inline]
+    fn is_passed(&self, p: DVec3, d: DVec3) -> bool {
+        let size = self.major + self.minor;
+        let (height, climb) = (p.dot(self.axis), d.dot(self.axis));
+        let per = 1.0 / climb;
+        let (middle, half) = (-height * per, self.minor * MARGIN * per);
+        let (p, d) = (p - self.axis * height, d - self.axis * climb);
+        let (enter, leave) = (p + d * (middle - half), p + d * (middle + half));
+        // Coordinates of this size have errors that the margin covers.
+        let far = p.abs() + (d * middle).abs();
+        let hole = self.major - self.minor - size * (MARGIN - 1.0);
+        hole > 0.0
+            && enter.length_squared() < hole * hole
+            && leave.length_squared() < hole * hole
+            && far.max_element() < FAR * size
     }
 
     /// The polynomial whose roots are the crossings: `(|p|² + R² - r²)² - 4 R² (|p|² - h²)` at `p = start + s along`, with a
@@ -443,6 +465,9 @@ impl Torus {
 /// The size of the volume to which rays are clipped, relative to the torus. It only has to cover the rounding error of the
 /// clipping itself.
 const MARGIN: f64 = 1.0 + 1.0 / 1024.0;
+
+/// The largest distance, relative to the torus, whose rounding errors the margin covers by far.
+const FAR: f64 = 1e9;
 
 impl Primitive for Torus {
     fn kind(&self) -> &'static str {
@@ -559,6 +584,7 @@ impl Solid for Torus {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::conformance::Random;
 
     crate::primitive_tests!(lying, || Torus::new(DVec3::ZERO, DVec3::Y, 1.0, 0.25));
     crate::primitive_tests!(tilted, || Torus::new(
@@ -580,6 +606,42 @@ mod tests {
         0.6,
         1.0
     ));
+
+    #[test]
+    fn rays_through_the_hole_pass_and_rays_at_its_rim_hit() {
+        let mut random = Random::new(11);
+        let mut passed = 0;
+        for n in 0..20_000 {
+            let minor = [0.3, 0.9, 1e-3, 0.9989, 1.0, 1.5][n % 6];
+            let center = DVec3::new(2.0, -1.0, 0.5) * [0.0, 1e4][n % 2];
+            let axis = DVec3::new(random.between(-1.0, 1.0), 1.0, random.between(-1.0, 1.0));
+            let torus = Torus::new(center, axis, 1.0, minor);
+            let (axis, right) = (torus.axis, torus.axis.any_orthonormal_vector());
+            let out =
+                right * random.between(-1.0, 1.0) + axis.cross(right) * random.between(-1.0, 1.0);
+            let out = out.normalize_or(right);
+            // From far outside of the rim to far inside, mostly near to it.
+            let off = random.between(-1.0, 1.0) * 10_f64.powf(random.between(-6.0, 0.0));
+            let at = out * ((1.0 - minor) * (1.0 + off)) + axis * random.between(-0.1, 0.1);
+            let tilt = DVec3::new(1.0, 0.0, 1.0) * random.between(-0.3, 0.3);
+            let direction = (axis + tilt) * [1.0, 1e-3, -50.0][n % 3];
+            let origin = center + at - direction * random.between(0.5, 1e5);
+            let ray = Ray::new(origin, direction);
+            if !torus.is_passed(ray.origin - center, direction) {
+                continue;
+            }
+            passed += 1;
+            assert!(crossings(&torus, &ray).is_empty());
+            let middle = -(origin - center).dot(axis) / direction.dot(axis);
+            let reach = 2.0 / direction.dot(axis).abs();
+            for step in -500..=500 {
+                let t = middle + reach * f64::from(step) / 500.0;
+                let value = torus.value(ray.at(t) - center);
+                assert!(value > 0.0, "{torus:?} {ray:?} {t}: {value}");
+            }
+        }
+        assert!(passed > 1000, "{passed}");
+    }
 
     fn crossings(torus: &Torus, ray: &Ray) -> Vec<f64> {
         let mut out = Crossings::default();
