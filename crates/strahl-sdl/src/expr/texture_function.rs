@@ -9,7 +9,8 @@ use std::sync::Arc;
 use strahl_function::{Cost, Graph, ScalarField};
 use strahl_math::DVec3;
 use strahl_shade::ColorFt;
-use strahl_shade::patterns::{PatternField, TexturePoint};
+use strahl_shade::functions::{Channel, PigmentChannel};
+use strahl_shade::patterns::TexturePoint;
 use strahl_shade::pigment::Pigment;
 
 /// A pigment that is called like a function.
@@ -20,64 +21,6 @@ pub struct PigmentFunction {
     cost: Cost,
 }
 
-/// A pattern's value as a function of space.
-#[derive(Debug)]
-struct PatternValue(PatternField);
-
-impl ScalarField for PatternValue {
-    fn value(&self, arguments: &[f64]) -> f64 {
-        self.0.value(&point(arguments))
-    }
-
-    fn cost(&self) -> Cost {
-        self.0.cost()
-    }
-}
-
-/// One component of a pigment's colour as a function of space.
-#[derive(Debug)]
-struct PigmentComponent {
-    function: PigmentFunction,
-    component: Component,
-}
-
-/// The component of a colour that a function uses.
-#[derive(Clone, Copy, Debug)]
-enum Component {
-    Red,
-    Green,
-    Blue,
-    Filter,
-    Transmit,
-    Gray,
-    /// Red and green as the two bytes of a height, as height fields read them.
-    Height,
-}
-
-impl ScalarField for PigmentComponent {
-    fn value(&self, arguments: &[f64]) -> f64 {
-        let color = self.function.pigment.color_at(&point(arguments));
-        match self.component {
-            Component::Red => color.rgb.r,
-            Component::Green => color.rgb.g,
-            Component::Blue => color.rgb.b,
-            Component::Filter => color.filter,
-            Component::Transmit => color.transmit,
-            Component::Gray => color.gray(),
-            Component::Height => (256.0 * color.rgb.r + color.rgb.g) / 257.0,
-        }
-    }
-
-    fn cost(&self) -> Cost {
-        self.function.cost
-    }
-}
-
-fn point(arguments: &[f64]) -> TexturePoint {
-    let at = |i: usize| arguments.get(i).copied().unwrap_or(f64::NAN);
-    TexturePoint::in_space(DVec3::new(at(0), at(1), at(2)))
-}
-
 impl Parser<'_> {
     /// `{ pattern { ... } }`
     pub(super) fn pattern_function(&mut self) -> PResult<Value> {
@@ -86,7 +29,7 @@ impl Parser<'_> {
             p.next()?;
             p.pattern_block()
         })?;
-        let field: Arc<dyn ScalarField> = Arc::new(PatternValue(field));
+        let field: Arc<dyn ScalarField> = Arc::new(field);
         let mut graph = Graph::new(["x", "y", "z"]);
         let arguments = graph.xyz();
         let root = graph.field(&field, &arguments);
@@ -146,20 +89,20 @@ impl Parser<'_> {
             ));
         }
         let name = self.next()?;
-        let component = match name.word() {
-            Some(Word::Red | Word::X | Word::U) => Component::Red,
-            Some(Word::Green | Word::Y | Word::V) => Component::Green,
-            Some(Word::Blue | Word::Z) => Component::Blue,
-            Some(Word::Filter | Word::T) => Component::Filter,
-            Some(Word::Transmit) => Component::Transmit,
-            Some(Word::Gray | Word::Grey) => Component::Gray,
+        let channel = match name.word() {
+            Some(Word::Red | Word::X | Word::U) => Channel::Red,
+            Some(Word::Green | Word::Y | Word::V) => Channel::Green,
+            Some(Word::Blue | Word::Z) => Channel::Blue,
+            Some(Word::Filter | Word::T) => Channel::Filter,
+            Some(Word::Transmit) => Channel::Transmit,
+            Some(Word::Gray | Word::Grey) => Channel::Gray,
             // Not a keyword: it has this meaning only here.
-            _ if name.symbol().is_some_and(|s| self.symbols.text(s) == "hf") => Component::Height,
+            _ if name.symbol().is_some_and(|s| self.symbols.text(s) == "hf") => Channel::Height,
             _ => return Err(self.unexpected(name, "a component of a colour")),
         };
-        Ok(Arc::new(PigmentComponent {
-            function: function.clone(),
-            component,
+        Ok(Arc::new(PigmentChannel {
+            pigment: Arc::clone(&function.pigment),
+            channel,
         }))
     }
 }

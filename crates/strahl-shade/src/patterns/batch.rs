@@ -176,6 +176,14 @@ fn leopard_of_four([x, y, z]: &[[f64; 4]; 3]) -> [f64; 4] {
 }
 
 impl PatternField {
+    /// Stores the values at several points, with the bits of [`PatternField::value`]. The slices have the same length.
+    pub fn store_values_at(&self, points: &[TexturePoint], values: &mut [f64]) {
+        for (points, values) in points.chunks(BATCH).zip(values.chunks_mut(BATCH)) {
+            let batch = Batch::<BATCH>::of(points);
+            self.store_moved(&batch.moved(|p| self.moved(p)), values);
+        }
+    }
+
     /// Stores the values at the places of a batch, as many as there are; [`PatternField::moved`] has led to them.
     pub(crate) fn store_moved<const N: usize>(&self, batch: &Batch<'_, N>, values: &mut [f64]) {
         self.as_ref().store_moved(batch, values);

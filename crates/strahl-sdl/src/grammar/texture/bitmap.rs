@@ -11,12 +11,13 @@ use strahl_formats::image::{
 use strahl_function::Cost;
 use strahl_math::DVec3;
 use strahl_scene::WorkingSpace;
-use strahl_shade::Color;
 use strahl_shade::image_map::{ImageMap, Interpolation, MapType};
 use strahl_shade::image_texture::{ColorSpace, TexelChannels, TexelData, TextureImage};
+use strahl_shade::patterns::{BATCH, TexturePoint};
+use strahl_shade::{Color, ColorFt};
 
-/// The red, green, blue and alpha at a point.
-type PictureFunction = Box<dyn Fn(DVec3) -> [f64; 4]>;
+/// Stores the red, green, blue and alpha at points, at most [`BATCH`].
+type PictureFunction = Box<dyn Fn(&[TexturePoint], &mut [[f64; 4]])>;
 
 /// The name of a picture's file, and where the scene names it.
 pub(super) type PictureFile = (String, Place);
@@ -422,13 +423,22 @@ impl Parser<'_> {
             let message = format!("a picture of {width} x {height} texels is too large here");
             return Err(self.fail(place, message));
         }
-        let (value, cost) = self.picture_function()?;
+        let (store, cost) = self.picture_function()?;
         let texels = u64::from(width) * u64::from(height);
         self.spend(texels.saturating_mul(cost.operations))?;
+        let mut points = Vec::with_capacity(BATCH);
+        let mut found = [[0.0; 4]; BATCH];
         for row in 0..height {
-            for column in 0..width {
-                let p = DVec3::new(share(column, width), share(row, height), 0.0);
-                take(value(p));
+            for first in (0..width).step_by(BATCH) {
+                let columns = first..width.min(first + BATCH as u32);
+                points.clear();
+                points.extend(columns.map(|column| {
+                    let p = DVec3::new(share(column, width), share(row, height), 0.0);
+                    TexturePoint::in_space(p)
+                }));
+                let found = &mut found[..points.len()];
+                store(&points, found);
+                found.iter().for_each(|texel| take(*texel));
             }
         }
         Ok((width, height))
@@ -438,7 +448,12 @@ impl Parser<'_> {
     /// the cost of a texel.
     fn picture_function(&mut self) -> PResult<(PictureFunction, Cost)> {
         use strahl_function::ScalarField;
-        use strahl_shade::patterns::{PatternField, TexturePoint};
+        use strahl_shade::patterns::PatternField;
+        let store_gray = |values: &[f64], out: &mut [[f64; 4]]| {
+            for (texel, value) in out.iter_mut().zip(values) {
+                *texel = [*value, *value, *value, 1.0];
+            }
+        };
         let inner = self.raw_ahead(1);
         if inner.is(Word::Pigment) {
             let pigment = self.braces(|p| {
@@ -446,11 +461,15 @@ impl Parser<'_> {
                 p.free_pigment_block()
             })?;
             let cost = pigment.cost();
-            let value = move |p| {
-                let color = pigment.color_at(&TexturePoint::in_space(p));
-                [color.rgb.r, color.rgb.g, color.rgb.b, 1.0 - color.transmit]
+            let store = move |points: &[TexturePoint], out: &mut [[f64; 4]]| {
+                let mut colors = [ColorFt::default(); BATCH];
+                let colors = &mut colors[..points.len()];
+                pigment.store_colors(points, colors);
+                for (texel, color) in out.iter_mut().zip(colors) {
+                    *texel = [color.rgb.r, color.rgb.g, color.rgb.b, 1.0 - color.transmit];
+                }
             };
-            return Ok((Box::new(value), cost));
+            return Ok((Box::new(store), cost));
         }
         if inner.is(Word::Pattern) {
             let field: PatternField = self.braces(|p| {
@@ -458,19 +477,28 @@ impl Parser<'_> {
                 p.pattern_block()
             })?;
             let cost = field.cost();
-            let value = move |p| {
-                let value = field.value(&TexturePoint::in_space(p));
-                [value, value, value, 1.0]
+            let store = move |points: &[TexturePoint], out: &mut [[f64; 4]]| {
+                let mut values = [0.0; BATCH];
+                field.store_values_at(points, &mut values[..points.len()]);
+                store_gray(&values, out);
             };
-            return Ok((Box::new(value), cost));
+            return Ok((Box::new(store), cost));
         }
         let function = self.nested(Self::function)?;
         let cost = ScalarField::cost(&function);
-        let value = move |p: DVec3| {
-            let value = ScalarField::value(&function, &p.to_array());
-            [value, value, value, 1.0]
+        let store = move |points: &[TexturePoint], out: &mut [[f64; 4]]| {
+            let mut columns = [[0.0; BATCH]; 3];
+            for (lane, point) in points.iter().enumerate() {
+                for (column, x) in columns.iter_mut().zip(point.position.to_array()) {
+                    column[lane] = x;
+                }
+            }
+            let [x, y, z] = columns.each_ref().map(|column| &column[..points.len()]);
+            let mut values = [0.0; BATCH];
+            ScalarField::store_values(&function, &[x, y, z], &mut values[..points.len()]);
+            store_gray(&values, out);
         };
-        Ok((Box::new(value), cost))
+        Ok((Box::new(store), cost))
     }
 
     fn bitmap_item(
