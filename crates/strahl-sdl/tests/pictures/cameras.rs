@@ -155,6 +155,15 @@ fn cameras_see_as_povrays() {
             "orthographic by angle",
             "orthographic angle 40 location <1, 2, -6> right 2 * x up 1.2 * y look_at 0",
         ),
+        ("no angle", "angle 0 location <1, 2, -6> look_at 0"),
+        (
+            "orthographic without an angle",
+            "orthographic angle 0 right -4.39 * x up 3.4 * y direction 50 * z location <0, 0, 50> look_at 0",
+        ),
+        (
+            "orthographic with an angle of nothing",
+            "orthographic angle 0 location <1, 2, -6> right 2 * x up 1.2 * y direction 1.5 * z look_at 0",
+        ),
         (
             "orthographic without a point",
             "orthographic location <0, 0.5, -5> direction 2 * z",

@@ -157,6 +157,7 @@ impl Draft {
     /// Half of the width of the view at a distance of 1, if there is an angle.
     fn slope(&self) -> Option<f64> {
         self.angle
+            .filter(|(angle, _)| *angle != 0.0)
             .map(|(angle, _)| det::tan(angle.to_radians() * 0.5))
     }
 
@@ -191,6 +192,19 @@ impl Draft {
                 self.up *= scale;
             }
             _ => {}
+        }
+    }
+
+    /// An angle of 0, which exporters write, does not count for flat pictures; but an orthographic camera with it is no wider than a perspective
+    /// one, whether `right` and `up` are given or not (measured).
+    fn drop_no_angle(&mut self) {
+        let is_flat = matches!(
+            self.projection,
+            Projection::Perspective | Projection::Orthographic
+        );
+        if is_flat && matches!(self.angle, Some((0.0, _))) {
+            self.angle = None;
+            self.sized = false;
         }
     }
 
@@ -378,6 +392,7 @@ impl Parser<'_> {
     }
 
     fn finish_camera(&mut self, mut draft: Draft, place: Place) -> PResult<Camera> {
+        draft.drop_no_angle();
         if let (Some((angle, _)), Projection::Perspective | Projection::Orthographic) =
             (draft.angle, &draft.projection)
             && !(angle > 0.0 && angle < 180.0)
