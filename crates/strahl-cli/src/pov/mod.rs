@@ -392,6 +392,11 @@ mod tests {
              --subset-start-frame 3 --subset-end-frame 0.5 --frame-step 2 --cyclic a.pov",
         );
         is("a.pov Final_Frame=-1", "a.pov");
+        is(
+            "a.pov +KFI1 +KFF1 +K0.3 +KI.2 +SF3 +KC",
+            "--clock 0.3 a.pov",
+        );
+        is("a.pov +KFF1", "--final-frame 1 a.pov");
     }
 
     #[test]

@@ -333,16 +333,20 @@ impl Settings {
         if let Some(version) = self.version {
             add("--language-version", version.to_string());
         }
+        // The frames from 1 to 1 are no animation, whatever else is said of it, as in POV-Ray (measured).
+        let is_still = self.initial_frame == Some(1) && self.final_frame == Some(1);
         for (option, n) in [
             ("--initial-frame", self.initial_frame),
             ("--final-frame", self.final_frame),
         ] {
-            if let Some(n) = n {
+            if let Some(n) = n.filter(|_| !is_still) {
                 add(option, n.to_string());
             }
         }
         for (option, value) in &self.times {
-            add(option, value.clone());
+            if !is_still || *option == "--clock" {
+                add(option, value.clone());
+            }
         }
         if let Some(header) = &self.header {
             add("--include", header.clone());
@@ -369,7 +373,7 @@ impl Settings {
             (self.grayscale, "--grayscale"),
             (is_part, "--full-size"),
             (self.no_output, "--no-output"),
-            (self.cyclic, "--cyclic"),
+            (self.cyclic && !is_still, "--cyclic"),
             (self.resume, "--resume"),
         ];
         words.extend(flags.iter().filter(|f| f.0).map(|f| f.1.to_owned()));
