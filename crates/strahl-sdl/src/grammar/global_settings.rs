@@ -143,13 +143,6 @@ impl Parser<'_> {
             }
             return Ok(());
         }
-        if space != WorkingSpace::Linear {
-            self.warn_hint(
-                place,
-                "the working space is not linear, so the light of several sources does not add up correctly",
-                "write `assumed_gamma 1.0`, and `srgb` instead of `rgb` before colours that should stay as they are",
-            );
-        }
         self.state.global.working_space = Some(space);
         Ok(())
     }
