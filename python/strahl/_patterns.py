@@ -105,6 +105,24 @@ class Pattern(Movable):
         return cls._of(core, "fractal")
 
     @classmethod
+    def density(cls, values: npt.ArrayLike, *, interpolation: Literal["nearest", "trilinear", "tricubic"] = "nearest") -> Pattern:
+        """Values (z, y, x) measured at the points of a grid that fills the unit cube; 0 outside of it. POV-Ray's ``density_file``.
+
+        Values are uint8, uint16 or uint32, whose largest number is 1, or floats from 0 to 1, of which 32 bits are kept. The value number ``i`` of ``n`` along an axis lies at ``i / n``.
+        """
+        samples = numbers(values, "values")
+        if samples.ndim != 3 or samples.size == 0 or max(samples.shape) > 65535:
+            raise ValueError(f"values must have the shape (z, y, x), each from 1 to 65535, not {np.shape(values)}")
+        samples = samples.astype(samples.dtype.newbyteorder("="), copy=False)
+        if samples.dtype not in (np.uint8, np.uint16, np.uint32):
+            if samples.dtype.kind in "iu":
+                raise TypeError(f"values must be uint8, uint16, uint32 or floats, not {samples.dtype}")
+            if not ((samples >= 0) & (samples <= 1)).all():
+                raise ValueError("values must be from 0 to 1")
+            samples = np.rint(samples.astype(np.float64) * 0xFFFF_FFFF).astype(np.uint32)
+        return cls._of(_strahl.Pattern.density(np.ascontiguousarray(samples), interpolation), "density")
+
+    @classmethod
     def function(cls, formula: str) -> Pattern:
         """The value of a formula of x, y and z in POV-Ray's language, modulo 1: ``"sin(x) * f_noise3d(x, y, z)"``. Raises `SceneError` if it is wrong."""
         from strahl._load import parse

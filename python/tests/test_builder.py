@@ -357,6 +357,29 @@ def test_cameras_see_through_meshes_lenses_and_ripples() -> None:
             eye.focused(0.5, (0, 0, 0), **wrong)  # type: ignore[arg-type]
 
 
+def test_densities_are_arrays() -> None:
+    values = np.random.default_rng(3).integers(0, 256, (4, 3, 2)).astype(np.uint8)
+    square = strahl.mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]).translate((0, 0, 0.6))
+    eye = strahl.Camera.orthographic((0.5, 0.5, -1), (0.5, 0.5, 0), height=1, aspect=1)
+    glow = strahl.Finish(ambient=0, diffuse=0, emission=1)
+
+    def seen(density: Pattern) -> Any:
+        pigment = Pigment.map(density, [(0, (0, 0, 0)), (1, (1, 1, 1))])
+        # The camera's x points to the left of the picture's, because it looks along z with right-handed coordinates.
+        return strahl.Scene(square.material(Texture(pigment, finish=glow)), eye).render(2, 3, sampling="center").rgb[::-1, ::-1, 0]
+
+    assert np.allclose(seen(Pattern.density(values)), values[2] / 255, atol=1e-6)
+    same = Pattern.density(values / 255)
+    assert np.allclose(seen(same), values[2] / 255, atol=1e-6)
+    for other in ("trilinear", "tricubic"):
+        assert not np.allclose(seen(Pattern.density(values, interpolation=other)), values[2] / 255)  # type: ignore[arg-type]
+    for wrong, error in ((np.zeros((2, 2)), ValueError), (np.zeros((2, 2, 2), np.int64), TypeError), (np.full((1, 1, 1), 1.5), ValueError), (np.zeros((0, 1, 1)), ValueError)):
+        with pytest.raises(error):
+            Pattern.density(wrong)
+    with pytest.raises(ValueError, match="interpolation"):
+        Pattern.density(values, interpolation="linear")  # type: ignore[arg-type]
+
+
 def test_images_are_arrays() -> None:
     pixels = np.random.default_rng(2).integers(0, 256, (7, 5, 3)).astype(np.uint8)
     square = strahl.mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]], uv=[[0, 0], [1, 0], [1, 1], [0, 1]])

@@ -5,14 +5,16 @@ use crate::errors;
 use crate::maps::Map;
 use crate::object::Object;
 use crate::textures::image::Picture;
+use numpy::{PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use strahl::math::noise::{NoiseGenerator, Turbulence};
 use strahl::math::{DVec2, Transform};
 use strahl::prelude::PatternField;
 use strahl::shade::patterns::{
-    Altitude, BlackHole, Crackle, CrackleMetric, Exterior, Fractal, FractalInterior, FractalKind,
-    Mapping, Modifiers, Pattern as Of, SlopeReference, TilingNumber, Warp, Wave,
+    Altitude, BlackHole, Crackle, CrackleMetric, DensityCodes, DensityGrid, DensityInterpolation,
+    Exterior, Fractal, FractalInterior, FractalKind, Mapping, Modifiers, Pattern as Of,
+    SlopeReference, TilingNumber, Warp, Wave,
 };
 
 /// A pattern with its modifiers. It never changes.
@@ -39,6 +41,39 @@ struct FractalNumbers {
     iterations: u32,
     exterior: (u32, f64),
     interior: (u32, f64),
+}
+
+/// The densities of a grid along z, y and x, as NumPy has them.
+#[derive(FromPyObject)]
+enum Densities<'py> {
+    Byte(PyReadonlyArray3<'py, u8>),
+    Short(PyReadonlyArray3<'py, u16>),
+    Long(PyReadonlyArray3<'py, u32>),
+}
+
+impl Densities<'_> {
+    fn grid(&self) -> PyResult<DensityGrid> {
+        let (shape, codes) = match self {
+            Self::Byte(array) => (
+                array.shape(),
+                DensityCodes::U8(array.as_slice().map_err(errors::value)?.to_vec()),
+            ),
+            Self::Short(array) => (
+                array.shape(),
+                DensityCodes::U16(array.as_slice().map_err(errors::value)?.to_vec()),
+            ),
+            Self::Long(array) => (
+                array.shape(),
+                DensityCodes::U32(array.as_slice().map_err(errors::value)?.to_vec()),
+            ),
+        };
+        let most = || errors::value("a grid has at most 65535 values in each direction");
+        let side = |length: usize| u16::try_from(length).map_err(|_| most());
+        let &[z, y, x] = shape else {
+            return Err(errors::value("densities lie along z, y and x"));
+        };
+        DensityGrid::try_new([side(x)?, side(y)?, side(z)?], codes).ok_or_else(most)
+    }
 }
 
 /// Octaves of noise: their number, and how frequency and strength change from one to the next.
@@ -156,6 +191,22 @@ impl Pattern {
             exterior: exterior.ok_or_else(unknown)?,
             interior: interior.ok_or_else(unknown)?,
         })))
+    }
+
+    #[staticmethod]
+    fn density(values: Densities<'_>, interpolation: &str) -> PyResult<Self> {
+        let interpolation = match interpolation {
+            "nearest" => DensityInterpolation::Nearest,
+            "trilinear" => DensityInterpolation::Trilinear,
+            "tricubic" => DensityInterpolation::Tricubic,
+            other => {
+                return Err(errors::value(format!(
+                    "there is no interpolation `{other}`"
+                )));
+            }
+        };
+        let grid = values.grid()?;
+        Ok(Self::of(Of::Density(Arc::new(grid), interpolation)))
     }
 
     #[staticmethod]

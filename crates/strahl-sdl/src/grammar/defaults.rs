@@ -5,6 +5,7 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use std::sync::Arc;
 use strahl_shade::Color;
+use strahl_shade::patterns::DensityGrid;
 use strahl_shade::pov_finish::PovFinish;
 
 /// State that the grammar keeps between statements.
@@ -26,6 +27,8 @@ pub struct State {
     pub(super) parts: u64,
     /// The pictures read so far.
     pub(super) pictures: Vec<KnownPicture>,
+    /// The density files read so far, by name.
+    pub(super) densities: Vec<(String, Arc<DensityGrid>)>,
     /// The fonts read so far.
     pub(super) fonts: Vec<KnownFont>,
     /// Isosurfaces to be shared.

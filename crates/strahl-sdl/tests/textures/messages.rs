@@ -8,7 +8,6 @@ use strahl_sdl::MemoryHost;
 fn what_is_not_supported_is_named() {
     for (items, word) in [
         ("pigment { facets }", "facets"),
-        ("pigment { density_file df3 \"x.df3\" }", "density_file"),
         ("normal { facets size 0.1 }", "facets"),
         ("pigment { tiling 25 }", "tiling 25"),
         ("interior { media { emission 1 } ior 1.5 }", "media"),
@@ -33,6 +32,19 @@ fn mistakes_have_a_line_and_advice() {
         ("pigment { chekcer }", &["chekcer", "checker"]),
         ("pigment { image_map { png \"none.png\" } }", &["none.png"]),
         ("pigment { image_map { png \"bad.png\" } }", &["bad.png"]),
+        ("pigment { density_file df3 \"none.df3\" }", &["none.df3"]),
+        (
+            "pigment { density_file \"grid.df3\" }",
+            &["`df3` and the name"],
+        ),
+        (
+            "pigment { density_file df3 \"bad.png\" }",
+            &["density file"],
+        ),
+        (
+            "pigment { density_file df3 \"grid.df3\" interpolate 3 }",
+            &["from 0 to 2"],
+        ),
         ("pigment { mandel 0 }", &["whole number"]),
         ("pigment { tiling 28 }", &["from 1 to 27", "28"]),
         (
@@ -58,7 +70,8 @@ fn mistakes_have_a_line_and_advice() {
         let text = format!("sphere {{ 0, 1\n {items} }}");
         let mut host = MemoryHost::new()
             .with_file("p.ppm", PICTURE)
-            .with_file("bad.png", "no picture");
+            .with_file("bad.png", "no picture")
+            .with_file("grid.df3", [0, 1, 0, 1, 0, 1, 200]);
         let parsed = parse_with(&mut host, &text);
         let error = parsed.diagnostics.iter().find(|d| d.is_error());
         let error = error.unwrap_or_else(|| panic!("no error in {items}"));

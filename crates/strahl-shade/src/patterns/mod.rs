@@ -10,6 +10,7 @@
 mod batch;
 mod blocks;
 mod crackle;
+mod density;
 mod fractal;
 mod modifiers;
 mod noisy;
@@ -27,6 +28,7 @@ use strahl_math::{DVec2, DVec3};
 pub use batch::BATCH;
 pub(crate) use batch::Batch;
 pub use crackle::{Crackle, CrackleMetric};
+pub use density::{DensityCodes, DensityGrid, DensityInterpolation};
 pub use fractal::{Exterior, Fractal, FractalKind, Interior as FractalInterior};
 pub use modifiers::{Modifiers, Wave};
 pub(crate) use plain::quilted_tilt;
@@ -167,6 +169,8 @@ pub enum Pattern {
     Cubic,
     /// `1 - sqrt(x² + z²)`, not below zero.
     Cylindrical,
+    /// Values measured at the points of a grid in the unit cube; 0 outside of it.
+    Density(Arc<DensityGrid>, DensityInterpolation),
     /// The cube of noise.
     Dents,
     /// A Mandelbrot, Julia or magnet set in the x-y plane.
@@ -289,6 +293,7 @@ impl Pattern {
             Self::Cells => crackle::cells(p),
             Self::Crackle(crackle) => crackle.value(p, noise),
             Self::Cylindrical => plain::cylindrical(p),
+            Self::Density(grid, interpolation) => grid.density(p, *interpolation),
             Self::Dents => noisy::dents(p, noise),
             Self::Fractal(fractal) => fractal.value(DVec2::new(p.x, p.y)),
             Self::Function(function) => plain::wrapped(function.value(&p.to_array())),

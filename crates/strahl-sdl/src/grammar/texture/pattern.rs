@@ -6,10 +6,11 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
+use strahl_formats::density::decode_density;
 use strahl_math::{DVec2, DVec3};
 use strahl_shade::patterns::{
-    Altitude, Crackle, CrackleMetric, Exterior, Fractal, FractalInterior, FractalKind, Pattern,
-    PatternField, SlopeReference, TilingNumber,
+    Altitude, Crackle, CrackleMetric, DensityInterpolation, Exterior, Fractal, FractalInterior,
+    FractalKind, Pattern, PatternField, SlopeReference, TilingNumber,
 };
 
 /// Reads the required parameters after the keyword of a pattern; the keyword is taken.
@@ -34,6 +35,7 @@ static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternPar
     (Word::Cubic, |_| Ok(Pattern::Cubic)),
     (Word::Cylindrical, |_| Ok(Pattern::Cylindrical)),
     (Word::Dents, |_| Ok(Pattern::Dents)),
+    (Word::DensityFile, |p| p.density_file()),
     (Word::Function, |p| {
         let function = p.nested(Parser::function)?;
         Ok(Pattern::Function(Arc::new(function)))
@@ -167,6 +169,11 @@ impl Parser<'_> {
                 self.take(token)?;
                 *mortar = self.float()?;
             }
+            (Word::Interpolate, Some(Pattern::Density(_, interpolation))) => {
+                self.take(token)?;
+                let number = self.whole(0, 2)?;
+                *interpolation = DensityInterpolation::from_number(number).unwrap_or_default();
+            }
             (Word::Form, Some(Pattern::Crackle(crackle))) => {
                 self.take(token)?;
                 crackle.form = self.vector3()?;
@@ -260,6 +267,31 @@ impl Parser<'_> {
             }
             _ => false,
         })
+    }
+
+    /// `df3 "file"`
+    fn density_file(&mut self) -> PResult<Pattern> {
+        let token = self.peek()?;
+        if !token.is(Word::Df3) {
+            return Err(self.unexpected(token, "`df3` and the name of a density file"));
+        }
+        self.take(token)?;
+        let name = self.file_name()?;
+        let place = self.place();
+        let known = self.state.densities.iter().find(|known| known.0 == name);
+        let grid = match known {
+            Some((_, grid)) => Arc::clone(grid),
+            None => {
+                let file = self.read_file(&name, place)?;
+                let grid = match decode_density(&file.bytes) {
+                    Ok(grid) => Arc::new(grid),
+                    Err(error) => return Err(self.fail(place, error.to_string())),
+                };
+                self.state.densities.push((name, Arc::clone(&grid)));
+                grid
+            }
+        };
+        Ok(Pattern::Density(grid, DensityInterpolation::default()))
     }
 
     /// The number of iterations. In normals, the strength after it is left to the caller.

@@ -2,6 +2,7 @@
 //! colours `rgb 0, rgb 1, ...`) at twelve points.
 
 mod blocks;
+mod density;
 mod fractals;
 mod modifiers;
 mod noisy;
