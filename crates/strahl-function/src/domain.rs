@@ -334,7 +334,10 @@ impl Dual {
         for (x, dual) in point.iter_mut().zip(arguments) {
             *x = dual.value;
         }
-        let value = field.gradient(&point[..arity], &mut partials[..arity]);
+        // The last ones are often constants.
+        let changes = |dual: &Self| dual.partials != [0.0; 3];
+        let changing = arguments.iter().rposition(changes).map_or(0, |at| at + 1);
+        let value = field.gradient(&point[..arity], &mut partials[..changing.min(arity)]);
         arguments
             .iter()
             .zip(partials)

@@ -53,7 +53,8 @@ pub trait ScalarField: Debug + Send + Sync {
         (self.bounds(arguments), Bounds::UNKNOWN)
     }
 
-    /// The value, which must have the bits of [`value`](Self::value), and its partial derivatives.
+    /// The value, which must have the bits of [`value`](Self::value), and its partial derivatives by the first arguments, as many as
+    /// `partials` has.
     ///
     /// By default central differences, good to about ten digits where the field is smooth.
     fn gradient(&self, arguments: &[f64], partials: &mut [f64]) -> f64 {
