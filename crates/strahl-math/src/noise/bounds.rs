@@ -21,6 +21,65 @@ pub fn noise_bounds(min: DVec3, max: DVec3, generator: NoiseGenerator) -> Range 
     dispatch!(Simd::best(), isa => within(isa, min, max, None, generator).value)
 }
 
+/// Stores [`noise_bounds`] over boxes of which the first is `area` (from its least to its largest corner) and each is the one before times
+/// `lacunarity`, rounded outwards; tells how many boxes there are until all others reach over more than two cells, the bounds of which
+/// are `(0, 1)` and not stored. `area` becomes the box after the last one that is stored.
+pub fn store_octave_bounds(
+    area: &mut [DVec3; 2],
+    lacunarity: f64,
+    generator: NoiseGenerator,
+    ranges: &mut [Range],
+) -> usize {
+    dispatch!(Simd::best(), isa => octaves_within(isa, area, lacunarity, generator, ranges))
+}
+
+#[inline(always)]
+pub(super) fn octaves_within<I: Isa>(
+    isa: I,
+    area: &mut [DVec3; 2],
+    lacunarity: f64,
+    generator: NoiseGenerator,
+    ranges: &mut [Range],
+) -> usize {
+    let by = isa.splat(lacunarity);
+    let [min, max] = *area;
+    let mut low = isa.load(&[min.x, min.y, min.z, 0.0]);
+    let mut high = isa.load(&[max.x, max.y, max.z, 0.0]);
+    let shift = isa.splat(match generator {
+        NoiseGenerator::Perlin => SHIFT,
+        _ => 0.0,
+    });
+    let mut count = ranges.len();
+    for (octave, range) in ranges.iter_mut().enumerate() {
+        let (min, max) = (isa.add(low, shift), isa.add(high, shift));
+        let found = over_cells(isa, min, max, None, generator);
+        *range = scaled(found, 0.0, generator).value;
+        if found.is_none() {
+            // Boxes that are as wide and do not shrink; a little more, for rounding.
+            let is_wide = isa.lt(isa.splat(2.1), isa.sub(high, low)) & 0b111 != 0;
+            if is_wide && lacunarity.abs() >= 1.0 {
+                count = octave;
+                break;
+            }
+        }
+        let (a, b) = (isa.mul(low, by), isa.mul(high, by));
+        low = outwards(isa, isa.min(a, b), -NEXT);
+        high = outwards(isa, isa.max(a, b), NEXT);
+    }
+    let ([x, y, z, _], [a, b, c, _]) = (isa.store(low), isa.store(high));
+    *area = [DVec3::new(x, y, z), DVec3::new(a, b, c)];
+    count
+}
+
+/// This part of a number, added to it, gives the next one: a bit more than half the place of its last bit.
+const NEXT: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
+
+/// The next number (those below the smallest normal one stay, which noise cannot tell).
+#[inline(always)]
+fn outwards<I: Isa>(isa: I, x: I::F64x4, next: f64) -> I::F64x4 {
+    isa.add(x, isa.mul(isa.abs(x), isa.splat(next)))
+}
+
 /// [`noise_bounds`], and bounds of the derivative of noise along a line in the box, on which each coordinate changes at a rate within bounds
 /// (`way`, finite); infinite where the box reaches over more than two cells.
 ///
@@ -60,13 +119,22 @@ fn within<I: Isa>(
     way: Option<&[Range; 3]>,
     generator: NoiseGenerator,
 ) -> Course {
-    let raw = match generator {
-        NoiseGenerator::Perlin => {
-            let shift = DVec3::splat(SHIFT);
-            over_cells(isa, min + shift, max + shift, way, generator)
-        }
-        _ => over_cells(isa, min, max, way, generator),
+    let shift = match generator {
+        NoiseGenerator::Perlin => DVec3::splat(SHIFT),
+        _ => DVec3::ZERO,
     };
+    let (min, max) = (min + shift, max + shift);
+    let min = isa.load(&[min.x, min.y, min.z, 0.0]);
+    let max = isa.load(&[max.x, max.y, max.z, 0.0]);
+    let speed: f64 = way.map_or(0.0, |way| {
+        way.iter().map(|(a, b)| a.abs().max(b.abs())).sum()
+    });
+    scaled(over_cells(isa, min, max, way, generator), speed, generator)
+}
+
+/// Bounds of noise by those of the sum over the corners, if they are known. `speed` is how fast coordinates change at most, in all.
+#[inline(always)]
+fn scaled(raw: Option<Course>, speed: f64, generator: NoiseGenerator) -> Course {
     let Some(Course { value, rate }) = raw else {
         return Course {
             value: (0.0, 1.0),
@@ -82,9 +150,6 @@ fn within<I: Isa>(
         NoiseGenerator::RangeCorrected => 0.48985582,
         NoiseGenerator::Perlin => 0.795,
     };
-    let speed: f64 = way.map_or(0.0, |way| {
-        way.iter().map(|(a, b)| a.abs().max(b.abs())).sum()
-    });
     let pad = ROUNDING * 16.0 * speed;
     let mut rate = (rate.0 * factor - pad, rate.1 * factor + pad);
     // Where noise is cut off it does not change.
@@ -111,13 +176,11 @@ fn end(x: f64, pad: f64, generator: NoiseGenerator) -> f64 {
 #[inline(always)]
 fn over_cells<I: Isa>(
     isa: I,
-    min: DVec3,
-    max: DVec3,
+    min: I::F64x4,
+    max: I::F64x4,
     way: Option<&[Range; 3]>,
     generator: NoiseGenerator,
 ) -> Option<Course> {
-    let min = isa.load(&[min.x, min.y, min.z, 0.0]);
-    let max = isa.load(&[max.x, max.y, max.z, 0.0]);
     let is_near = isa.lt(isa.splat(-OVERFLOW), min) & isa.lt(max, isa.splat(OVERFLOW));
     // Also refuses NaN.
     if is_near & isa.le(min, max) != 0b1111 {

@@ -25,7 +25,7 @@ mod kernel;
 mod plane;
 mod tables;
 
-pub use bounds::{noise_bounds, noise_rate};
+pub use bounds::{noise_bounds, noise_rate, store_octave_bounds};
 pub use plane::{PlaneBounds, PlaneNoise, plane_noise, plane_noise_bounds};
 
 use crate::DVec3;
@@ -86,6 +86,56 @@ pub fn store_noise(points: [&[f64]; 3], generator: NoiseGenerator, values: &mut 
             four.copy_from_slice(&found[..four.len()]);
         }
     });
+}
+
+/// Stores [`noise`] at points of which the first is `p` and each is the one before times `lacunarity`, with the same bits. `p` becomes the one
+/// after the last.
+pub fn store_octaves(
+    p: &mut DVec3,
+    lacunarity: f64,
+    generator: NoiseGenerator,
+    values: &mut [f64],
+) {
+    dispatch!(Simd::best(), isa => octaves_with(isa, p, lacunarity, generator, values));
+}
+
+#[inline(always)]
+fn octaves_with<I: Isa>(
+    isa: I,
+    p: &mut DVec3,
+    lacunarity: f64,
+    generator: NoiseGenerator,
+    values: &mut [f64],
+) {
+    let by = isa.splat(lacunarity);
+    let mut point = isa.load(&[p.x, p.y, p.z, 0.0]);
+    for four in values.chunks_mut(4) {
+        // Two octaves take less time one by one.
+        if four.len() < 3 || generator == NoiseGenerator::Perlin {
+            for value in four {
+                let [x, y, z, _] = isa.store(point);
+                *value = kernel::noise(isa, DVec3::new(x, y, z), generator);
+                point = isa.mul(point, by);
+            }
+            continue;
+        }
+        let mut points = [point; 4];
+        for octave in 1..4 {
+            points[octave] = isa.mul(points[octave - 1], by);
+        }
+        // The lanes that are left take the last one.
+        if let &mut [_, _, _] = four {
+            points[3] = points[2];
+        }
+        point = isa.mul(points[3], by);
+        let [x, y, z, _] = isa.transpose(points);
+        let found = isa.store(kernel::noise_of_four(isa, [x, y, z], generator));
+        for (value, found) in four.iter_mut().zip(found) {
+            *value = found;
+        }
+    }
+    let [x, y, z, _] = isa.store(point);
+    *p = DVec3::new(x, y, z);
 }
 
 /// [`noise`] at eight points, whose coordinates are given four by four and axis by axis, with the same bits. Points that are all in one cell of

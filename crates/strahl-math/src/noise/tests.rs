@@ -589,3 +589,66 @@ fn neighbours_have_the_noise_of_points() {
         }
     }
 }
+
+#[test]
+fn stored_octaves_have_the_noise_and_the_bounds_of_points_and_boxes() {
+    let generators = [
+        NoiseGenerator::Original,
+        NoiseGenerator::RangeCorrected,
+        NoiseGenerator::Perlin,
+    ];
+    let factors = [2.0, 2.17, 0.4, -1.5, 0.0, 1e9, f64::INFINITY, f64::NAN];
+    let special = [0.0, -0.0, 4095.5, -3e9, 1e300, f64::INFINITY, f64::NAN];
+    for i in 0..1200 {
+        let t = f64::from(i);
+        let mut p = DVec3::new(t * 0.731 - 70.0, t * 0.317 + 3.0, 9.0 - t * 0.613);
+        if let Some(x) = special.get(i as usize / 3) {
+            p[i as usize % 3] = *x;
+        }
+        let (generator, factor) = (generators[i as usize % 3], factors[i as usize / 3 % 8]);
+        let count = i as usize % 12;
+        let size = [1e-9, 1e-3, 0.05, 0.7][i as usize / 24 % 4];
+        let area = [p, p + DVec3::new(size, 0.3 * size, 0.1 * size)];
+        for simd in Simd::available() {
+            let (mut values, mut next) = ([0.0; 12], p);
+            dispatch!(simd, isa => {
+                octaves_with(isa, &mut next, factor, generator, &mut values[..count]);
+            });
+            let (mut ranges, mut left) = ([(0.5, 0.5); 12], area);
+            let known = dispatch!(simd, isa => {
+                bounds::octaves_within(isa, &mut left, factor, generator, &mut ranges[..count])
+            });
+            let (mut q, mut area) = (p, area);
+            for octave in 0..count {
+                let noise = noise(q, generator);
+                assert!(
+                    values[octave].to_bits() == noise.to_bits()
+                        || values[octave].is_nan() && noise.is_nan(),
+                    "{p} {factor} {octave} {}",
+                    simd.level()
+                );
+                let bounds = noise_bounds(area[0], area[1], generator);
+                let found = if octave < known {
+                    ranges[octave]
+                } else {
+                    (0.0, 1.0)
+                };
+                assert_eq!(found, bounds, "{p} {factor} {octave} {}", simd.level());
+                q *= factor;
+                let (a, b) = ((area[0] * factor).to_array(), (area[1] * factor).to_array());
+                for axis in 0..3 {
+                    let (low, high) = if b[axis] < a[axis] {
+                        (b[axis], a[axis])
+                    } else {
+                        (a[axis], b[axis])
+                    };
+                    let is_zero = |x: f64| x == 0.0;
+                    area[0][axis] = if is_zero(low) { low } else { low.next_down() };
+                    area[1][axis] = if is_zero(high) { high } else { high.next_up() };
+                }
+            }
+            let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+            assert!((0..3).all(|axis| same(next[axis], q[axis])));
+        }
+    }
+}
