@@ -163,6 +163,43 @@ fn batches_have_the_bits_of_points() {
 }
 
 #[test]
+fn sums_of_octaves_with_other_parameters_than_the_first_are_their_own() {
+    let mut ws = Workspace::new();
+    let sets = [
+        [0.5, 2.0, 6.5, 0.7, 1.0, 2.0],
+        [0.5, 2.0, 9.0, 0.7, 1.0, 2.0],
+        [0.5, 2.1, 6.5, 0.7, 1.0, 2.0],
+        [1.5, 2.0, 6.5, 0.7, 1.0, 1.0],
+    ];
+    for name in ["f_hetero_mf", "f_ridge", "f_ridged_mf"] {
+        let all = open(name, 6).unwrap();
+        for set in sets.iter().chain(&sets) {
+            let fixed = at(name, set).unwrap();
+            let p = [0.3, -1.7, 2.9];
+            let arguments: Vec<f64> = p.iter().chain(set).copied().collect();
+            let value = fixed.value(&mut ws, &p);
+            assert_eq!(value.to_bits(), all.value(&mut ws, &arguments).to_bits());
+            let area = p.map(|x| Bounds::argument(x, x + 0.1));
+            let mut open_area = area.to_vec();
+            open_area.extend(set.map(Bounds::point));
+            let bounds = fixed.bounds(&mut ws, &area);
+            assert_eq!(bounds, all.bounds(&mut ws, &open_area), "{name} {set:?}");
+            let (same, by) = fixed.gradient(&mut ws, &p);
+            assert_eq!(value.to_bits(), same.to_bits());
+            for (axis, slope) in by.into_iter().enumerate() {
+                // As differences are taken.
+                let step = 6e-6 * f64::max(p[axis].abs(), 1.0);
+                let (mut above, mut below) = (p, p);
+                above[axis] += step;
+                below[axis] -= step;
+                let change = fixed.value(&mut ws, &above) - fixed.value(&mut ws, &below);
+                assert_eq!(slope, change / (above[axis] - below[axis]), "{name}");
+            }
+        }
+    }
+}
+
+#[test]
 fn wrong_names_and_counts_are_reported() {
     let error = at("f_sphrere", &[1.0]).unwrap_err();
     assert_eq!(

@@ -10,6 +10,7 @@
 mod algebraic;
 mod curves;
 mod fractal;
+mod octaves;
 mod solids;
 mod term;
 mod tubes;
