@@ -548,7 +548,7 @@ impl Ranges<'_> {
     /// `None` if noise can be anything in this octave and all others.
     #[inline(always)]
     fn next(&mut self) -> Option<Range> {
-        if self.next == self.end && !self.go_on() {
+        if self.next == self.end && (self.left == 0 || !self.go_on()) {
             return None;
         }
         let range = self.some[self.next % TOGETHER];
