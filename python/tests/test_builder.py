@@ -359,7 +359,7 @@ def test_cameras_see_through_meshes_lenses_and_ripples() -> None:
 
 def test_densities_are_arrays() -> None:
     values = np.random.default_rng(3).integers(0, 256, (4, 3, 2)).astype(np.uint8)
-    square = strahl.mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]).translate((0, 0, 0.6))
+    square = strahl.mesh([[0, 0, 0.6], [1, 0, 0.6], [1, 1, 0.6], [0, 1, 0.6]], [[0, 1, 2], [0, 2, 3]])
     eye = strahl.Camera.orthographic((0.5, 0.5, -1), (0.5, 0.5, 0), height=1, aspect=1)
     glow = strahl.Finish(ambient=0, diffuse=0, emission=1)
 
@@ -556,7 +556,7 @@ SAME: dict[tuple[str, str], dict[str, Any]] = {
             "Aoi", "Boxed", "Bozo", "Cells", "Checker", "Cubic", "Cylindrical", "Dents", "Granite", "Hexagon", "Leopard", "Marble", "Onion", "Planar", "Radial",
             "Spherical", "Square", "Triangular", "Wood", "Wrinkles",
         )},
-        "Agate": Pattern.agate, "Brick": Pattern.brick, "Crackle": Pattern.crackle, "Fractal": Pattern.fractal, "Function": Pattern.function,
+        "Agate": Pattern.agate, "Brick": Pattern.brick, "Crackle": Pattern.crackle, "Density": Pattern.density, "Fractal": Pattern.fractal, "Function": Pattern.function,
         "Gradient": Pattern.gradient, "Image": Pattern.image, "Object": Pattern.object, "Pigment": Pattern.pigment, "Quilted": Pattern.quilted,
         "Ripples": Pattern.ripples, "Slope": Pattern.slope, "Spiral1": Pattern.spiral, "Spiral2": Pattern.spiral, "Tiling": Pattern.tiling, "Waves": Pattern.waves,
     },
