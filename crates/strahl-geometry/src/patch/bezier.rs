@@ -6,6 +6,7 @@ use super::frame::Frame;
 use super::hull;
 use super::net::Net;
 use super::newton::Candidate;
+use super::piece::PatchPlace;
 use super::search::{Aim, Keep, Search};
 use super::settle;
 use super::tree::Tree;
@@ -38,7 +39,7 @@ pub(super) struct Bezier<const K: usize> {
     is_thin: bool,
     pub(super) bounds: Aabb,
     /// The pieces, when the first ray comes.
-    tree: OnceLock<Tree>,
+    tree: OnceLock<Box<Tree>>,
 }
 
 impl<const K: usize> Bezier<K> {
@@ -76,7 +77,8 @@ impl<const K: usize> Bezier<K> {
     }
 
     fn tree(&self) -> &Tree {
-        self.tree.get_or_init(|| Tree::build(&self.net, self.seam))
+        self.tree
+            .get_or_init(|| Box::new(Tree::build(&self.net, self.seam)))
     }
 
     fn search<'a>(&'a self, frame: &'a Frame, keep: Keep<'a>, aim: Aim) -> Search<'a, K> {
@@ -88,10 +90,10 @@ impl<const K: usize> Bezier<K> {
         self.border.winding(&self.net, |p| frame.see(p))
     }
 
-    /// The nearest hit in a range.
+    /// The nearest hit in a range, for a ray that starts at this place, if it leaves the patch.
     pub(super) fn nearest(
         &self,
-        frame: &Frame,
+        (frame, start): (&Frame, Option<PatchPlace>),
         range: Interval,
         keep: Keep<'_>,
     ) -> Option<Candidate> {
@@ -100,7 +102,7 @@ impl<const K: usize> Bezier<K> {
             nearest: None,
             is_doubtful: self.is_thin,
         };
-        let mut search = self.search(frame, keep, aim);
+        let mut search = self.search(frame, keep, aim).from(start);
         search.run();
         match search.aim {
             Aim::Nearest {
@@ -116,14 +118,19 @@ impl<const K: usize> Bezier<K> {
         }
     }
 
-    /// Whether there is a hit in a range.
-    pub(super) fn any(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> bool {
+    /// Whether there is a hit in a range, for a ray that starts at this place, if it leaves the patch.
+    pub(super) fn any(
+        &self,
+        (frame, start): (&Frame, Option<PatchPlace>),
+        range: Interval,
+        keep: Keep<'_>,
+    ) -> bool {
         let aim = Aim::Any {
             range,
             found: false,
             is_doubtful: self.is_thin,
         };
-        let mut search = self.search(frame, keep, aim);
+        let mut search = self.search(frame, keep, aim).from(start);
         search.run();
         match search.aim {
             Aim::Any { found: true, .. } => true,

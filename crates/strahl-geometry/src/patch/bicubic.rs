@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::hull::{points, project};
 use super::net::Net;
 use super::newton::Candidate;
+use super::piece::PatchPlace;
 use crate::primitives::point_error;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
 use std::sync::Arc;
@@ -18,7 +19,7 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 ///
 /// Rays meet the surface itself, at any scale; nothing is replaced by triangles. It is an open surface without an inside. Texture
 /// coordinates are `u` and `v`, or are interpolated between those given for the corners. The front is the side to which
-/// `dS/dv x dS/du` points. One facet, 0.
+/// `dS/dv x dS/du` points. The facet of a hit tells its place to 2⁻¹⁶ of `u` and `v`, so that a ray that leaves it finds other hits only.
 ///
 /// Patches with a common border (the same four control points and weights, in either direction) close tightly: a ray through
 /// the border meets exactly one of them, because both decide by the same computation on the curve. Edges and parts may be collapsed to
@@ -33,11 +34,11 @@ pub struct BicubicPatch {
     is_flipped: bool,
 }
 
-/// The surface.
-const SURFACE: SurfaceId = SurfaceId {
-    element: 0,
-    facet: 0,
-};
+/// Where a ray starts that leaves a patch.
+fn start(from: Option<SurfaceId>) -> Option<PatchPlace> {
+    from.map(|from| PatchPlace::of_facet(from.facet))
+}
+
 /// Control points are below this size: the products of three of them are finite.
 pub(super) const LARGEST: f64 = 1e70;
 /// The largest weight is at most so many times the least.
@@ -130,7 +131,10 @@ impl BicubicPatch {
     fn hit(candidate: &Candidate) -> PrimHit {
         PrimHit {
             t: candidate.t,
-            surface: SURFACE,
+            surface: SurfaceId {
+                element: 0,
+                facet: PatchPlace::of(candidate.place()).facet(),
+            },
             uv: candidate.place(),
         }
     }
@@ -182,10 +186,11 @@ impl Primitive for BicubicPatch {
         &self,
         ray: &Ray,
         range: Interval,
-        _from: Option<SurfaceId>,
+        from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let nearest = self.bezier.nearest(&Frame::new(ray)?, range, None);
+        let frame = Frame::new(ray)?;
+        let nearest = self.bezier.nearest((&frame, start(from)), range, None);
         nearest.map(|candidate| Self::hit(&candidate))
     }
 
@@ -193,10 +198,10 @@ impl Primitive for BicubicPatch {
         &self,
         ray: &Ray,
         range: Interval,
-        _from: Option<SurfaceId>,
+        from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> bool {
-        Frame::new(ray).is_some_and(|frame| self.bezier.any(&frame, range, None))
+        Frame::new(ray).is_some_and(|frame| self.bezier.any((&frame, start(from)), range, None))
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

@@ -1,7 +1,7 @@
 //! Surfaces of elements in a tree: what NURBS and subdivision surfaces have in common.
 
 use super::winding::Pass;
-use crate::{PrimHit, SurfacePoint};
+use crate::{PrimHit, SurfaceId, SurfacePoint};
 use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
@@ -63,22 +63,40 @@ pub(super) trait Elements {
 
     fn tree(&self) -> &ElementTree;
 
-    /// The nearest hit of an element in a range.
-    fn nearest(&self, element: u32, line: &Self::Line<'_>, range: Interval) -> Option<PrimHit>;
+    /// The nearest hit of an element in a range, for a line that starts there, if it leaves the surface.
+    fn nearest(
+        &self,
+        element: u32,
+        line: &Self::Line<'_>,
+        range: Interval,
+        from: Option<SurfaceId>,
+    ) -> Option<PrimHit>;
 
-    /// Whether an element has a hit in a range.
-    fn any(&self, element: u32, line: &Self::Line<'_>, range: Interval) -> bool;
+    /// Whether an element has a hit in a range, for a line that starts there, if it leaves the surface.
+    fn any(
+        &self,
+        element: u32,
+        line: &Self::Line<'_>,
+        range: Interval,
+        from: Option<SurfaceId>,
+    ) -> bool;
 
     /// Adds all passes of the line through an element.
     fn all(&self, element: u32, line: &Self::Line<'_>, passes: &mut Vec<Pass>);
 }
 
 /// The nearest hit of a surface.
-pub(super) fn nearest<S: Elements>(surface: &S, ray: &Ray, range: Interval) -> Option<PrimHit> {
+pub(super) fn nearest<S: Elements>(
+    surface: &S,
+    ray: &Ray,
+    range: Interval,
+    from: Option<SurfaceId>,
+) -> Option<PrimHit> {
     let mut visitor = Nearest {
         surface,
         line: surface.line(ray)?,
         range,
+        from,
         best: None,
     };
     surface.tree().walk(ray, range, &mut visitor);
@@ -86,7 +104,12 @@ pub(super) fn nearest<S: Elements>(surface: &S, ray: &Ray, range: Interval) -> O
 }
 
 /// Whether a surface has a hit.
-pub(super) fn any<S: Elements>(surface: &S, ray: &Ray, range: Interval) -> bool {
+pub(super) fn any<S: Elements>(
+    surface: &S,
+    ray: &Ray,
+    range: Interval,
+    from: Option<SurfaceId>,
+) -> bool {
     let Some(line) = surface.line(ray) else {
         return false;
     };
@@ -94,6 +117,7 @@ pub(super) fn any<S: Elements>(surface: &S, ray: &Ray, range: Interval) -> bool 
         surface,
         line,
         range,
+        from,
         found: false,
     };
     surface.tree().walk(ray, range, &mut visitor);
@@ -118,6 +142,7 @@ struct Nearest<'a, S: Elements> {
     surface: &'a S,
     line: S::Line<'a>,
     range: Interval,
+    from: Option<SurfaceId>,
     best: Option<PrimHit>,
 }
 
@@ -127,7 +152,7 @@ impl<S: Elements> Visitor for Nearest<'_, S> {
             Some(best) => self.range.with_max(best.t),
             None => self.range,
         };
-        let Some(found) = self.surface.nearest(id, &self.line, range) else {
+        let Some(found) = self.surface.nearest(id, &self.line, range, self.from) else {
             return t_max;
         };
         let key = |hit: &PrimHit| (hit.t, hit.surface.element);
@@ -143,6 +168,7 @@ struct Any<'a, S: Elements> {
     surface: &'a S,
     line: S::Line<'a>,
     range: Interval,
+    from: Option<SurfaceId>,
     found: bool,
 }
 
@@ -150,7 +176,7 @@ impl<S: Elements> Visitor for Any<'_, S> {
     const ANY: bool = true;
 
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        if self.surface.any(id, &self.line, self.range) {
+        if self.surface.any(id, &self.line, self.range, self.from) {
             self.found = true;
             return f64::NEG_INFINITY;
         }

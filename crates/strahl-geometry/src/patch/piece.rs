@@ -36,6 +36,53 @@ impl Square {
     }
 }
 
+/// A place on a patch, in steps of 2⁻¹⁶ of both parameters: what the facet of a hit tells of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PatchPlace {
+    u: u32,
+    v: u32,
+}
+
+impl PatchPlace {
+    /// The steps of a parameter.
+    const STEPS: u32 = 1 << 16;
+    /// How far within a square a place has to be, if the square is as wide as all steps: a sixty-fourth of its width.
+    const MARGIN: u32 = Self::STEPS / 64;
+
+    /// The place of parameters from 0 to 1.
+    pub(super) fn of([u, v]: [f64; 2]) -> Self {
+        let steps = |x: f64| ((x * f64::from(Self::STEPS)) as u32).min(Self::STEPS - 1);
+        Self {
+            u: steps(u),
+            v: steps(v),
+        }
+    }
+
+    pub(super) fn facet(self) -> u32 {
+        self.u | self.v << 16
+    }
+
+    pub(super) fn of_facet(facet: u32) -> Self {
+        Self {
+            u: facet & (Self::STEPS - 1),
+            v: facet >> 16,
+        }
+    }
+
+    /// Whether it is well within a square.
+    pub(super) fn is_within(self, Square { level, i, j }: Square) -> bool {
+        [(self.u, i), (self.v, j)]
+            .into_iter()
+            .all(|(place, number)| {
+                let place = place << level;
+                let rest = place & (Self::STEPS - 1);
+                place >> 16 == u32::from(number)
+                    && rest >= Self::MARGIN
+                    && rest < Self::STEPS - Self::MARGIN
+            })
+    }
+}
+
 /// Bounds of the lengths of the second derivatives of points, by the parameters of the patch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curving<T = f64> {

@@ -13,7 +13,7 @@ use super::hull::{OVERLAP, project};
 use super::leaf::NEARLY_LINEAR;
 use super::net::Net;
 use super::newton::{Candidate, Found, Rectangle, newton, ways};
-use super::piece::{Curving, Square};
+use super::piece::{Curving, PatchPlace, Square};
 use super::tree::{Tree, Visitor};
 use strahl_math::Interval;
 use strahl_math::error::gamma;
@@ -35,6 +35,8 @@ pub(super) struct Search<'a, const K: usize> {
     seam: f64,
     halvings: u32,
     keep: Keep<'a>,
+    /// Where the ray starts, if it leaves the patch.
+    start: Option<PatchPlace>,
     /// What the search is for.
     pub(super) aim: Aim,
 }
@@ -75,8 +77,15 @@ impl<'a, const K: usize> Search<'a, K> {
             seam: 0.0,
             halvings: HALVINGS,
             keep,
+            start: None,
             aim,
         }
+    }
+
+    /// Leaves the place aside at which the ray starts.
+    pub(super) fn from(mut self, start: Option<PatchPlace>) -> Self {
+        self.start = start;
+        self
     }
 
     /// Adds to the rounding error how far the net may be from what neighbours know of it.
@@ -88,7 +97,7 @@ impl<'a, const K: usize> Search<'a, K> {
     /// Visits the pieces along the ray.
     pub(super) fn run(&mut self) {
         let (net, tree, frame) = (self.net, self.tree, self.frame);
-        tree.walk(net, frame, self);
+        tree.walk(net, (frame, self.start), self);
     }
 
     /// Searches a piece that is seen as `part`, and halves it as long as nothing is certain about it; `noise` is a bound of the rounding
@@ -224,6 +233,16 @@ impl<const K: usize> Visitor for Search<'_, K> {
             Aim::Nearest { range, nearest, .. } => {
                 Some(nearest.map_or(*range, |n| range.with_max(n.t)))
             }
+        }
+    }
+
+    fn wants_any(&self) -> bool {
+        self.keep.is_none() && matches!(self.aim, Aim::Any { .. })
+    }
+
+    fn met(&mut self) {
+        if let Aim::Any { found, .. } = &mut self.aim {
+            *found = true;
         }
     }
 

@@ -1,7 +1,8 @@
 use super::frame::Frame;
+use super::piece::PatchPlace;
 use super::*;
 use crate::conformance::Random;
-use crate::{GeometryError, PrimHit, Primitive, Scratch, Sphere, Torus};
+use crate::{GeometryError, PrimHit, Primitive, Scratch, Sphere, SurfaceId, Torus};
 use strahl_math::{DVec2, DVec3, Interval, Ray, Transform};
 
 /// Control points, `points[v][u]`.
@@ -232,6 +233,59 @@ fn hits_add_up_to_the_winding_number() {
         }
     }
     assert!(counts[..5].iter().all(|c| *c > 20), "{counts:?}");
+}
+
+/// That a ray starts on the patch makes its own place no hit, and changes nothing else.
+#[test]
+fn rays_that_leave_a_patch_meet_the_rest_of_it() {
+    let subjects = [
+        patch(wavy()),
+        patch(folded()),
+        patch(petal()),
+        patch(heights([[0.0, 0.02, 0.03, 0.0]; 4])),
+        octant(),
+        bow(),
+    ];
+    let mut random = Random::new(9);
+    let (mut met, mut starts) = (0, 0);
+    for round in 0..60_000 {
+        let subject = &subjects[round % subjects.len()];
+        let (u, v) = (random.unit(), random.unit());
+        let [p, by_u, by_v] = subject.bezier.jet(u, v);
+        let Some(normal) = by_u.cross(by_v).try_normalize() else {
+            continue;
+        };
+        let towards = subject.bezier.jet(random.unit(), random.unit())[0] - p;
+        let flat = towards - normal * towards.dot(normal);
+        let direction = match round % 3 {
+            0 => random.direction(),
+            1 => towards,
+            // At a low angle.
+            _ => flat + normal * (flat.length() * random.magnitude(-6.0, 0.0)),
+        };
+        let surface = SurfaceId {
+            element: 0,
+            facet: PatchPlace::of([u, v]).facet(),
+        };
+        let error = crate::primitives::point_error(p, subject.bounds().max_abs(), 64);
+        let off = normal * (error.length() * direction.dot(normal).signum());
+        let ray = Ray::new(p + off, direction);
+        let range = Interval::new(1e-6, random.magnitude(-2.0, 2.0));
+        let scratch = &mut Scratch::default();
+        let past = subject.closest_hit(&ray, range, None, scratch);
+        let from = Some(surface);
+        let found = subject.closest_hit(&ray, range, from, scratch);
+        assert_eq!(found, past, "{round} {ray:?}");
+        let any = subject.any_hit(&ray, range, from, scratch);
+        assert_eq!(any, found.is_some(), "{round} {ray:?}");
+        // With the hit at the start, if it is within the range.
+        let range = Interval::new(f64::NEG_INFINITY, 1e-6);
+        let all = |from| subject.closest_hit(&ray, range, from, &mut Scratch::default());
+        starts += usize::from(all(None).is_some() && all(from).is_none());
+        met += usize::from(any);
+    }
+    assert!(met > 5_000, "{met}");
+    assert!(starts > 1_000, "{starts}");
 }
 
 /// Rays beside a tangent of the sphere, however near: with two hits that are nearly one, or none.

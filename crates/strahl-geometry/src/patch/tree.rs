@@ -8,30 +8,30 @@
 
 use super::frame::Frame;
 use super::hull::{hull, sixteenths};
-use super::leaf::{Leaf, LocalRay, NEARLY_LINEAR, Verdict};
+use super::leaf::{Leaf, LocalRay, NEARLY_LINEAR, Question, Verdict};
 use super::net::Net;
-use super::piece::{Curving, Piece, Square};
-use std::collections::VecDeque;
+use super::piece::{Curving, PatchPlace, Piece, Square};
+use arrayvec::ArrayVec;
 use std::sync::OnceLock;
 use strahl_accel::{SixteenBoxes, SixteenSlabs};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::{Isa, Simd, dispatch};
 
-/// So many nodes lie below each other at most; a ray that needs smaller pieces makes them for itself.
+/// So many nodes lie below each other at most: one of the whole patch and those of its parts. A ray that needs smaller pieces makes them for itself.
 const NODES: u8 = 2;
 /// Sixteen pieces: the parts of a larger one.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct Node {
     boxes: SixteenBoxes,
     square: Square,
     /// In the coordinates of the tree.
     curving: Curving<f32>,
     /// The places with leaves, as bits; at others there are nodes.
-    leaves: u16,
-    /// Those of a node follow each other.
-    first_leaf: u32,
-    first_node: u32,
+    leaf_places: u16,
+    leaves: Box<[Leaf]>,
+    /// Each from when the first ray comes that needs it.
+    nodes: Box<[OnceLock<Box<Self>>]>,
 }
 
 /// The tree of a patch. It is kept in coordinates `(p - anchor) scale`, in which the patch is nearly as large as 1.
@@ -47,7 +47,7 @@ pub(super) struct Tree {
     curving: Curving<f32>,
     kind: Kind,
     /// The parts, when the first ray comes that needs them.
-    pieces: OnceLock<Pieces>,
+    parts: OnceLock<Box<Node>>,
 }
 
 /// What the whole patch tells as a piece.
@@ -61,18 +61,14 @@ enum Kind {
     Curved,
 }
 
-/// Smaller and smaller parts of a patch.
-#[derive(Debug, Default)]
-struct Pieces {
-    /// The root is node 0.
-    nodes: Vec<Node>,
-    leaves: Vec<Leaf>,
-}
-
 /// Who is shown the pieces along a ray.
 pub(super) trait Visitor {
     /// The range in which hits are still wanted; `None` if the search is over.
     fn range(&self) -> Option<Interval>;
+    /// Whether any hit will do.
+    fn wants_any(&self) -> bool;
+    /// There is a hit in the range. Only told those who want any.
+    fn met(&mut self);
     /// A piece that is nearly linear as the ray sees it: its hit is near this place, in parts of the piece, or there is none.
     fn certain(&mut self, square: Square, start: [f64; 2]);
     /// A piece about which nothing is certain.
@@ -80,11 +76,9 @@ pub(super) trait Visitor {
 }
 
 impl Tree {
-    /// The bytes that its pieces take.
+    /// The bytes that it takes, so far.
     pub(super) fn bytes(&self) -> usize {
-        self.pieces.get().map_or(0, |pieces| {
-            size_of_val(pieces.nodes.as_slice()) + size_of_val(pieces.leaves.as_slice())
-        })
+        size_of::<Self>() + self.parts.get().map_or(0, |node| node.bytes())
     }
 
     /// The tree of a net that may be this far from what neighbours know of it.
@@ -97,9 +91,9 @@ impl Tree {
             whole: Leaf::new([DVec3::ZERO; 3], DVec3::ZERO),
             curving: Curving::NONE,
             kind: Kind::Flat,
-            pieces: OnceLock::new(),
+            parts: OnceLock::new(),
         };
-        let piece = Piece::new(net, (tree.anchor, tree.scale), seam);
+        let piece = tree.piece(net);
         let (whole, bounds) = piece.leaf();
         tree.curving = piece.curving_of(Square::WHOLE);
         tree.whole = whole;
@@ -113,37 +107,32 @@ impl Tree {
         tree
     }
 
-    /// The parts of the net.
-    fn divide<const K: usize>(&self, net: &Net<4, K>) -> Pieces {
-        let mut pieces = Pieces::default();
-        // Nodes in the order of their numbers, which are given when they come into the queue.
-        let mut queue = VecDeque::from([(*net, Square::WHOLE, self.curving, 1)]);
-        while let Some((net, square, curving, depth)) = queue.pop_front() {
-            let mut node = Node {
-                boxes: SixteenBoxes::EMPTY,
-                square,
-                curving,
-                leaves: 0,
-                first_leaf: pieces.leaves.len() as u32,
-                first_node: (pieces.nodes.len() + 1 + queue.len()) as u32,
-            };
-            for (place, part) in sixteenths(&net).as_flattened().iter().enumerate() {
-                node.boxes.set(place, &self.local(part));
-                let piece = Piece::new(part, (self.anchor, self.scale), self.seam);
-                let (leaf, bounds) = piece.leaf();
-                if depth == NODES || bounds.is_flat() {
-                    node.leaves |= 1 << place;
-                    pieces.leaves.push(leaf);
-                } else {
-                    let square = square.sixteenth(place);
-                    queue.push_back((*part, square, piece.curving_of(square), depth + 1));
-                }
+    /// The node of a part of the net.
+    fn node<const K: usize>(&self, part: &Net<4, K>, square: Square) -> Node {
+        let mut boxes = SixteenBoxes::EMPTY;
+        let (mut leaf_places, mut leaves) = (0, ArrayVec::<Leaf, 16>::new());
+        let is_last = square.level + 2 == 2 * NODES;
+        for (place, part) in sixteenths(part).as_flattened().iter().enumerate() {
+            boxes.set(place, &self.local(part));
+            let (leaf, bounds) = self.piece(part).leaf();
+            if is_last || bounds.is_flat() {
+                leaf_places |= 1 << place;
+                leaves.push(leaf);
             }
-            pieces.nodes.push(node);
         }
-        pieces.nodes.shrink_to_fit();
-        pieces.leaves.shrink_to_fit();
-        pieces
+        Node {
+            boxes,
+            square,
+            curving: self.piece(part).curving_of(square),
+            leaf_places,
+            nodes: (leaves.len()..16).map(|_| OnceLock::new()).collect(),
+            leaves: leaves.iter().copied().collect(),
+        }
+    }
+
+    /// A part of the net as a piece.
+    fn piece<const K: usize>(&self, part: &Net<4, K>) -> Piece<K> {
+        Piece::new(part, (self.anchor, self.scale), self.seam)
     }
 
     /// The box around a piece, in the coordinates of the tree.
@@ -153,23 +142,33 @@ impl Tree {
         Aabb::new(local(min), local(max))
     }
 
-    /// Shows the pieces along a ray to the visitor, nearly in the order in which the ray enters them.
+    /// Shows the pieces along a ray to the visitor, nearly in the order in which the ray enters them. If the ray starts on the patch, this
+    /// place is no hit; the piece around it need not be shown.
     pub(super) fn walk<const K: usize>(
         &self,
         net: &Net<4, K>,
-        frame: &Frame,
+        (frame, start): (&Frame, Option<PatchPlace>),
         visitor: &mut dyn Visitor,
     ) {
-        let divide = || self.divide(net);
-        dispatch!(Simd::best(), isa => self.walk_with(isa, frame, &divide, visitor));
+        // The node of the whole patch, or of a part.
+        let divide = |place: Option<usize>| {
+            Box::new(match place {
+                None => self.node(net, Square::WHOLE),
+                Some(place) => {
+                    let parts = sixteenths(net);
+                    self.node(&parts.as_flattened()[place], Square::WHOLE.sixteenth(place))
+                }
+            })
+        };
+        dispatch!(Simd::best(), isa => self.walk_with(isa, (frame, start), &divide, visitor));
     }
 
     #[inline(always)]
     fn walk_with<I: Isa>(
         &self,
         isa: I,
-        frame: &Frame,
-        divide: &dyn Fn() -> Pieces,
+        (frame, start): (&Frame, Option<PatchPlace>),
+        divide: &dyn Fn(Option<usize>) -> Box<Node>,
         visitor: &mut dyn Visitor,
     ) {
         let per = frame.length * self.scale;
@@ -192,65 +191,62 @@ impl Tree {
             direction: splat(frame.along),
             noise: isa.splat((1.0 + origin.abs().max_element()) * gamma(512)),
         };
+        let any = visitor.wants_any();
+        let question = |square: Square, range: Interval| Question {
+            range,
+            starts: start.is_some_and(|place| place.is_within(square)),
+            any,
+        };
         if self.kind != Kind::Curved {
-            let verdict = self.whole.meet(isa, &ray, range);
+            let verdict = self.whole.meet(isa, &ray, question(Square::WHOLE, range));
             if self.kind == Kind::Flat || !matches!(verdict, Verdict::Uncertain) {
                 show(verdict, Square::WHOLE, &self.curving, self.scale, visitor);
                 return;
             }
         }
-        let pieces = self.pieces.get_or_init(divide);
+        let mut node: &Node = self.parts.get_or_init(|| divide(None));
         let Some(slabs) = SixteenSlabs::new(isa, &straight, range) else {
             return;
         };
         let mut t_max = slabs.t_max(range.max);
-        // A place of a node, and where the ray enters its box.
-        let mut stack = [(0_u32, 0.0_f32); 16 * NODES as usize];
-        let (mut height, mut number) = (0, 0);
+        // Places of nodes, and where the ray enters their boxes: the nearest one is the last.
+        let mut stack = ArrayVec::<(&Node, u32, f32), { 16 * NODES as usize }>::new();
         loop {
-            let Some(node) = pieces.nodes.get(number as usize) else {
-                return;
-            };
             let (near, mut hit) = slabs.enter(isa, &node.boxes, t_max);
             let near = isa.store_f32x16(near).0;
-            let base = height;
+            let base = stack.len();
             while hit != 0 {
                 let place = hit.trailing_zeros();
                 hit &= hit - 1;
                 let near = near[place as usize & 15];
-                // The nearest one on top.
-                let mut at = height;
-                while at > base && stack[at - 1].1 < near {
-                    stack[at] = stack[at - 1];
+                stack.push((node, place, near));
+                let mut at = stack.len() - 1;
+                while at > base && stack[at - 1].2 < near {
+                    stack.swap(at - 1, at);
                     at -= 1;
                 }
-                stack[at] = (number << 4 | place, near);
-                height += 1;
             }
             // Leaves, until there is a node.
-            number = loop {
-                if height == 0 {
+            node = loop {
+                let Some((parent, place, near)) = stack.pop() else {
                     return;
-                }
-                height -= 1;
-                let (index, near) = stack[height];
+                };
                 if near > t_max {
                     continue;
                 }
-                let Some(parent) = pieces.nodes.get(index as usize >> 4) else {
-                    return;
-                };
-                let place = index & 15;
-                let before = u32::from(parent.leaves) & ((1 << place) - 1);
-                if parent.leaves >> place & 1 == 0 {
-                    break parent.first_node + place - before.count_ones();
+                let leaves_before = parent.leaf_places & ((1_u16 << place) - 1);
+                let leaves_before = leaves_before.count_ones();
+                if parent.leaf_places >> place & 1 == 0 {
+                    let Some(part) = parent.nodes.get((place - leaves_before) as usize) else {
+                        return;
+                    };
+                    break part.get_or_init(|| divide(Some(place as usize)));
                 }
-                let number = parent.first_leaf + before.count_ones();
-                let Some(leaf) = pieces.leaves.get(number as usize) else {
+                let Some(leaf) = parent.leaves.get(leaves_before as usize) else {
                     return;
                 };
                 let square = parent.square.sixteenth(place as usize);
-                let verdict = leaf.meet(isa, &ray, range);
+                let verdict = leaf.meet(isa, &ray, question(square, range));
                 if show(verdict, square, &parent.curving, self.scale, visitor) {
                     let Some(wanted) = visitor.range() else {
                         return;
@@ -260,6 +256,17 @@ impl Tree {
                 }
             };
         }
+    }
+}
+
+impl Node {
+    /// The bytes that it takes, so far.
+    fn bytes(&self) -> usize {
+        let nodes = self.nodes.iter().filter_map(|node| node.get());
+        size_of::<Self>()
+            + size_of_val(&*self.leaves)
+            + size_of_val(&*self.nodes)
+            + nodes.map(|node| node.bytes()).sum::<usize>()
     }
 }
 
@@ -274,6 +281,7 @@ fn show(
 ) -> bool {
     match verdict {
         Verdict::Missed => return false,
+        Verdict::Met => visitor.met(),
         Verdict::Certain(start) => visitor.certain(square, start),
         Verdict::Uncertain => {
             let unscaled = |length: f32| f64::from(length) / scale;

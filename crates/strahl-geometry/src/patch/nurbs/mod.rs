@@ -13,6 +13,7 @@ use super::bicubic::LARGEST;
 use super::elements::{self, ElementTree, Elements, Front};
 use super::frame::Frame;
 use super::newton::Candidate;
+use super::piece::PatchPlace;
 use super::search::Keep;
 use super::winding::{Pass, Winding};
 use crate::primitives::point_error;
@@ -43,7 +44,7 @@ pub use trim::{NurbsCurve, TrimLoop};
 /// An untrimmed surface that is closed, because its sides are the same curves or collapsed to points, as those of a sphere or a
 /// torus, is a solid: a point is inside if the surface winds around it. Others have no inside, but several of them may close a volume ([`NurbsBrep`]); their front is the
 /// side to which `dS/du x dS/dv` points. Texture coordinates are `u` and `v`, scaled to run from 0 to 1. Elements are the
-/// Bezier patches, with one facet each. Parts may be collapsed to lines or points: normals there are those of the surface
+/// Bezier patches; the facet of a hit tells its place on the patch to 2⁻¹⁶ of its sides, so that a ray that leaves it finds other hits only. Parts may be collapsed to lines or points: normals there are those of the surface
 /// beside them.
 #[derive(Debug)]
 pub struct Nurbs {
@@ -230,14 +231,21 @@ fn check_weights(
 
 /// The hit of a candidate on part `id`.
 fn hit(id: u32, candidate: &Candidate) -> PrimHit {
+    let place = candidate.place();
     PrimHit {
         t: candidate.t,
         surface: SurfaceId {
             element: id,
-            facet: 0,
+            facet: PatchPlace::of(place).facet(),
         },
-        uv: candidate.place(),
+        uv: place,
     }
+}
+
+/// Where on part `id` a ray starts, if it leaves that part.
+fn start(id: u32, from: Option<SurfaceId>) -> Option<PatchPlace> {
+    from.filter(|from| from.element == id)
+        .map(|from| PatchPlace::of_facet(from.facet))
 }
 
 impl Elements for Nurbs {
@@ -251,13 +259,21 @@ impl Elements for Nurbs {
         &self.tree
     }
 
-    fn nearest(&self, id: u32, frame: &Frame, range: Interval) -> Option<PrimHit> {
-        let found = self.with_part(id, |part, keep| part.patch.nearest(frame, range, keep));
+    fn nearest(
+        &self,
+        id: u32,
+        frame: &Frame,
+        range: Interval,
+        from: Option<SurfaceId>,
+    ) -> Option<PrimHit> {
+        let line = (frame, start(id, from));
+        let found = self.with_part(id, |part, keep| part.patch.nearest(line, range, keep));
         found.flatten().map(|candidate| hit(id, &candidate))
     }
 
-    fn any(&self, id: u32, frame: &Frame, range: Interval) -> bool {
-        self.with_part(id, |part, keep| part.patch.any(frame, range, keep)) == Some(true)
+    fn any(&self, id: u32, frame: &Frame, range: Interval, from: Option<SurfaceId>) -> bool {
+        let line = (frame, start(id, from));
+        self.with_part(id, |part, keep| part.patch.any(line, range, keep)) == Some(true)
     }
 
     fn all(&self, id: u32, frame: &Frame, passes: &mut Vec<Pass>) {
@@ -303,20 +319,20 @@ impl Primitive for Nurbs {
         &self,
         ray: &Ray,
         range: Interval,
-        _from: Option<SurfaceId>,
+        from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        elements::nearest(self, ray, range)
+        elements::nearest(self, ray, range, from)
     }
 
     fn any_hit(
         &self,
         ray: &Ray,
         range: Interval,
-        _from: Option<SurfaceId>,
+        from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> bool {
-        elements::any(self, ray, range)
+        elements::any(self, ray, range, from)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

@@ -5,15 +5,21 @@ use crate::patch::frame::Frame;
 use crate::patch::hull::{points, project};
 use crate::patch::net::Curve;
 use crate::patch::newton::Candidate;
+use crate::patch::piece::PatchPlace;
 use crate::patch::search::Keep;
 use std::fmt::Debug;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Transform};
 
+/// A ray, and where on the patch it starts, if it leaves it.
+type Start<'a> = (&'a Frame, Option<PatchPlace>);
+
 /// What a surface asks its patches, whose degrees differ.
 pub(super) trait Patch: Debug + Send + Sync {
     fn bounds(&self) -> Aabb;
-    fn nearest(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> Option<Candidate>;
-    fn any(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> bool;
+    /// As [`Bezier::nearest`].
+    fn nearest(&self, line: Start<'_>, range: Interval, keep: Keep<'_>) -> Option<Candidate>;
+    /// As [`Bezier::any`].
+    fn any(&self, line: Start<'_>, range: Interval, keep: Keep<'_>) -> bool;
     fn jet(&self, u: f64, v: f64) -> [DVec3; 3];
     fn normal(&self, uv: DVec2, jet: [DVec3; 3]) -> Option<DVec3>;
     fn mapped(&self, map: &Transform) -> Box<dyn Patch>;
@@ -32,12 +38,12 @@ impl<const K: usize> Patch for Bezier<K> {
         self.bounds
     }
 
-    fn nearest(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> Option<Candidate> {
-        self.nearest(frame, range, keep)
+    fn nearest(&self, line: Start<'_>, range: Interval, keep: Keep<'_>) -> Option<Candidate> {
+        self.nearest(line, range, keep)
     }
 
-    fn any(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> bool {
-        self.any(frame, range, keep)
+    fn any(&self, line: Start<'_>, range: Interval, keep: Keep<'_>) -> bool {
+        self.any(line, range, keep)
     }
 
     fn jet(&self, u: f64, v: f64) -> [DVec3; 3] {

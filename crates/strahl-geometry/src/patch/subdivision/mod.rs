@@ -44,7 +44,7 @@ pub use data::{SubdivisionData, SubdivisionScheme};
 pub struct Subdivision {
     cage: Cage,
     /// The trees of the elements, when the first ray comes.
-    nodes: Vec<OnceLock<Box<Node>>>,
+    nodes: Vec<OnceLock<Node>>,
     /// Over the elements.
     tree: ElementTree,
     front: Front,
@@ -117,7 +117,7 @@ impl Subdivision {
 
     fn node(&self, element: u32) -> Option<&Node> {
         let slot = self.nodes.get(element as usize)?;
-        Some(slot.get_or_init(|| Box::new(Node::new(self.cage.ring(element as usize)))))
+        Some(slot.get_or_init(|| Node::new(self.cage.ring(element as usize))))
     }
 
     /// The hit that was found in a part of an element.
@@ -158,7 +158,13 @@ impl Elements for Subdivision {
         &self.tree
     }
 
-    fn nearest(&self, id: u32, line: &Line<'_>, range: Interval) -> Option<PrimHit> {
+    fn nearest(
+        &self,
+        id: u32,
+        line: &Line<'_>,
+        range: Interval,
+        _from: Option<SurfaceId>,
+    ) -> Option<PrimHit> {
         let mut best: Option<PrimHit> = None;
         let mut ask = |leaf: &Leaf, place: Place, range: Interval| {
             let Some(found) = leaf.nearest(line, range) else {
@@ -174,7 +180,7 @@ impl Elements for Subdivision {
         best
     }
 
-    fn any(&self, id: u32, line: &Line<'_>, range: Interval) -> bool {
+    fn any(&self, id: u32, line: &Line<'_>, range: Interval, _from: Option<SurfaceId>) -> bool {
         let mut found = false;
         let mut ask = |leaf: &Leaf, _: Place, range: Interval| {
             found = found || leaf.any(line, range);
@@ -235,20 +241,20 @@ impl Primitive for Subdivision {
         &self,
         ray: &Ray,
         range: Interval,
-        _from: Option<SurfaceId>,
+        from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        elements::nearest(self, ray, range)
+        elements::nearest(self, ray, range, from)
     }
 
     fn any_hit(
         &self,
         ray: &Ray,
         range: Interval,
-        _from: Option<SurfaceId>,
+        from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> bool {
-        elements::any(self, ray, range)
+        elements::any(self, ray, range, from)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

@@ -29,7 +29,7 @@ const THIN: f64 = 1.0 / (1_u64 << 32) as f64;
 pub(super) struct Leaf {
     patches: Patches,
     /// The normal at the irregular vertex nearby, where the patches are too thin for one of their own.
-    normal: Option<DVec3>,
+    normal: Option<Box<DVec3>>,
 }
 
 #[derive(Debug)]
@@ -59,7 +59,7 @@ struct Kid {
     /// Until a ray comes.
     ring: Mutex<Option<Box<Ring>>>,
     /// From then on.
-    node: OnceLock<Box<Node>>,
+    node: OnceLock<Node>,
 }
 
 /// The line of a ray, for all that is asked along it.
@@ -144,7 +144,7 @@ impl Leaf {
         };
         Self {
             patches,
-            normal: rest.and_then(|tip| tip.normal),
+            normal: rest.and_then(|tip| tip.normal).map(Box::new),
         }
     }
 
@@ -160,14 +160,16 @@ impl Leaf {
     /// The nearest hit in a range.
     pub(super) fn nearest(&self, line: &Line<'_>, range: Interval) -> Option<Found> {
         match &self.patches {
-            Patches::Quad(patch) => patch.nearest(&line.frame, range, None).map(Found::in_quad),
+            Patches::Quad(patch) => patch
+                .nearest((&line.frame, None), range, None)
+                .map(Found::in_quad),
             Patches::Triangle(parts) => {
                 let mut best: Option<Found> = None;
                 for (i, part) in parts.iter().enumerate() {
                     if line.enter(&part.bounds, range).is_none() {
                         continue;
                     }
-                    let Some(found) = part.nearest(&line.frame, range, None) else {
+                    let Some(found) = part.nearest((&line.frame, None), range, None) else {
                         continue;
                     };
                     if best.as_ref().is_none_or(|b| found.t < b.candidate.t) {
@@ -182,9 +184,10 @@ impl Leaf {
     /// Whether there is a hit in a range.
     pub(super) fn any(&self, line: &Line<'_>, range: Interval) -> bool {
         match &self.patches {
-            Patches::Quad(patch) => patch.any(&line.frame, range, None),
+            Patches::Quad(patch) => patch.any((&line.frame, None), range, None),
             Patches::Triangle(parts) => parts.iter().any(|part| {
-                line.enter(&part.bounds, range).is_some() && part.any(&line.frame, range, None)
+                line.enter(&part.bounds, range).is_some()
+                    && part.any((&line.frame, None), range, None)
             }),
         }
     }
@@ -227,15 +230,18 @@ impl Leaf {
                 ([point, by_u, by_v], back)
             }
         };
-        (jet, self.normal.or_else(|| back.map(|back| -back)))
+        let own = self.normal.as_deref().copied();
+        (jet, own.or_else(|| back.map(|back| -back)))
     }
 
-    /// The bytes that it takes.
-    pub(super) fn bytes(&self) -> usize {
-        match &self.patches {
-            Patches::Quad(patch) => patch.bytes(),
-            Patches::Triangle(parts) => parts.iter().map(Bezier::bytes).sum(),
-        }
+    /// The bytes that it takes beside itself.
+    fn bytes(&self) -> usize {
+        let normal = self.normal.as_ref().map_or(0, |_| size_of::<DVec3>());
+        normal
+            + match &self.patches {
+                Patches::Quad(patch) => patch.bytes(),
+                Patches::Triangle(parts) => parts.iter().map(Bezier::bytes).sum(),
+            }
     }
 }
 
@@ -376,16 +382,15 @@ impl Node {
         ([point, by_u / size, by_v / size], normal)
     }
 
-    /// The bytes that it takes.
+    /// The bytes that it takes beside itself.
     pub(super) fn bytes(&self) -> usize {
-        let inner = match self {
+        match self {
             Self::Leaf(leaf) => leaf.bytes(),
             Self::Split(split) => {
                 let own = size_of::<Split>() + size_of_val(&*split.kids);
                 own + split.kids.iter().map(Kid::bytes).sum::<usize>()
             }
-        };
-        size_of::<Self>() + inner
+        }
     }
 }
 
@@ -397,7 +402,7 @@ impl Kid {
             return Self {
                 bounds: leaf.bounds(),
                 ring: Mutex::new(None),
-                node: OnceLock::from(Box::new(Node::Leaf(leaf))),
+                node: OnceLock::from(Node::Leaf(leaf)),
             };
         }
         Self {
@@ -412,13 +417,13 @@ impl Kid {
         self.node.get_or_init(|| {
             let mut place = self.ring.lock().unwrap_or_else(PoisonError::into_inner);
             let ring = place.take().expect("a node is made once");
-            Box::new(Node::new(*ring))
+            Node::new(*ring)
         })
     }
 
     /// The bytes that it takes beside itself.
     fn bytes(&self) -> usize {
-        let node = self.node.get().map_or(0, |node| node.bytes());
+        let node = self.node.get().map_or(0, Node::bytes);
         let place = self.ring.lock().unwrap_or_else(PoisonError::into_inner);
         node + place
             .as_ref()
