@@ -5,6 +5,7 @@
 //! Pictures are small; `STRAHL_FULL=256x256 cargo test --release -p strahl --test accelerators` makes them larger.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use strahl::accel::AcceleratorKind;
 use strahl::sdl::{Options, Value};
 use strahl::tracing::{PACKET, Prepared, RenderOptions, RenderScene, Sampling, TileOrder};
@@ -147,6 +148,21 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     found
 }
 
+/// [`compare`] for each scene, several at a time.
+fn compare_all(scenes: &[PathBuf]) {
+    let next = AtomicUsize::new(0);
+    let threads = std::thread::available_parallelism().map_or(2, |n| n.get());
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some(scene) = scenes.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    compare(scene);
+                }
+            });
+        }
+    });
+}
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -155,16 +171,12 @@ fn root() -> PathBuf {
 fn every_scene_of_the_repository_is_the_same_picture() {
     let scenes = files(&root().join("scenes"), &[".pov", ".nff", ".gltf", ".glb"]);
     assert!(scenes.len() >= 2);
-    for scene in &scenes {
-        compare(scene);
-    }
+    compare_all(&scenes);
 }
 
 #[test]
 fn the_procedural_databases_are_the_same_pictures() {
     let folder = std::env::var_os("STRAHL_SPD")
         .map_or_else(|| root().join("../shared/data/spd"), PathBuf::from);
-    for scene in files(&folder, &[".nff.gz"]) {
-        compare(&scene);
-    }
+    compare_all(&files(&folder, &[".nff.gz"]));
 }
