@@ -29,7 +29,7 @@ pub(super) const HEAD: &str = "\n\
 struct Cost {
     /// Processor seconds.
     seconds: f64,
-    /// The most memory that it had at a time, in MiB.
+    /// The most memory that it had at a time without that of the program's own code, in MiB.
     memory: f64,
     triangles: f64,
 }
@@ -135,9 +135,20 @@ pub(super) fn one(args: &mut Arguments<'_>) -> Result<()> {
     println!(
         "{COST}{} {} {triangles}",
         time.num_microseconds() as f64 * 1e-6,
-        usage.max_rss() as f64 / 1024.0
+        (usage.max_rss() - mapped_files()?) as f64 / 1024.0
     );
     Ok(())
+}
+
+/// The memory that holds parts of files, in KiB: the program's own code, as far as it was needed.
+fn mapped_files() -> Result<i64> {
+    let status = std::fs::read_to_string("/proc/self/status").context("there is no /proc")?;
+    let field = status
+        .lines()
+        .find_map(|line| line.strip_prefix("RssFile:"));
+    let field = field.and_then(|field| field.trim().strip_suffix(" kB"));
+    let field = field.context("/proc/self/status has no RssFile")?;
+    Ok(field.parse()?)
 }
 
 /// Renders with one thread and one ray for each pixel; returns the number of triangles.
