@@ -63,7 +63,7 @@ fn evaluate<'s>(
     if !texture.solid_layer(position, normal, -surface.v, eta, paint) {
         let mut place = TexturePoint {
             position,
-            tilted_at: None,
+            is_member: false,
             in_object: None,
             surface: position,
             n_geom: surface.n_geom,

@@ -217,7 +217,7 @@ impl RenderScene {
         };
         let mut place = TexturePoint {
             position: point.position,
-            tilted_at: None,
+            is_member: false,
             in_object: None,
             surface: point.position,
             n_geom: point.n_geom * facing,

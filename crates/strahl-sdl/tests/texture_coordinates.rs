@@ -7,7 +7,7 @@ groups! {
     surfaces_with_coordinates_of_their_own,
     other_surfaces_are_mapped_by_x_and_y_of_the_world,
     normals_by_texture_coordinates_are_tilted_in_the_world,
-    a_texture_with_uv_mapping_leaves_normals_in_space,
+    a_texture_with_uv_mapping_tilts_normals_in_its_own_space,
     uv_mapping_of_an_object_is_that_of_its_parts,
     uv_mapping_is_a_texture_pigment_or_normal_of_its_own,
 }

@@ -159,7 +159,7 @@ impl Pigment {
                     sum * (1.0 / total)
                 }
             }
-            Self::UvMapped(pigment) => pigment.color_at(&point.on_surface_but_normals()),
+            Self::UvMapped(pigment) => pigment.color_at(&point.at_coordinates()),
             Self::Quick(_, pigment) => pigment.color_at(point),
         }
     }

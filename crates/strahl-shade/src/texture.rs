@@ -331,7 +331,7 @@ impl Texture {
             Self::Map(field, map) => {
                 let warps = &field.modifiers.warps;
                 let (value, place) = field.value_and_place(point);
-                let inner = point.moved_to(place, |p| field.moved(p));
+                let inner = point.moved_to(place, |p| field.moved(p)).of_member();
                 match map.lookup(value) {
                     None => {}
                     Some(Blend::One(texture)) => visit(texture, &inner, warps, 1.0),
@@ -345,20 +345,20 @@ impl Texture {
             Self::Blocks(field, textures) => {
                 let warps = &field.modifiers.warps;
                 let place = field.moved(point.position);
-                let inner = point.moved_to(place, |p| field.moved(p));
+                let inner = point.moved_to(place, |p| field.moved(p)).of_member();
                 if let Some(texture) = textures.get(field.block_moved(place)).or(textures.last()) {
                     visit(texture, &inner, warps, 1.0);
                 }
             }
             Self::Average(members, modifiers) => {
-                let inner = point.moved(|p| modifiers.moved(p));
+                let inner = point.moved(|p| modifiers.moved(p)).of_member();
                 let total: f64 = members.iter().map(|(weight, _)| weight).sum();
                 for (weight, texture) in members.iter().filter(|_| total != 0.0) {
                     visit(texture, &inner, &modifiers.warps, weight / total);
                 }
             }
             Self::MaterialMap(image, modifiers, textures) => {
-                let inner = point.moved(|p| modifiers.moved(p));
+                let inner = point.moved(|p| modifiers.moved(p)).of_member();
                 let index = match image.color(inner.position) {
                     None => 0,
                     Some(color) => (color.rgb.r * 255.0).round() as usize,
@@ -380,7 +380,8 @@ impl Texture {
                 visit(texture, &inner, transform.as_ref(), 1.0);
             }
             Self::UvMapped(texture) => {
-                visit(texture, &point.on_surface_but_normals(), &Identity, 1.0);
+                let inner = point.at_coordinates().of_member();
+                visit(texture, &inner, &Identity, 1.0);
             }
         }
     }
@@ -454,12 +455,16 @@ impl PlainTexture {
     /// bumps keep their size; `n` is the normal in the texture's space. `None` without a normal of its own.
     fn tilt(&self, point: &TexturePoint, n: DVec3, ways: Ways<'_>) -> Option<(DVec3, DVec3)> {
         let normal = self.normal.as_ref()?;
-        let (outer, in_map) = if normal.uv_mapped {
-            let tilted = normal.tilt(&point.at(point.uv.extend(0.0)), point.n_shade);
-            (tilted, tilted)
-        } else {
-            let tilted = normal.tilt(&point.for_normals(), n);
-            (ways.out.leave(tilted), ways.to_map.leave(tilted))
+        let mapped = normal.uv_mapped.then(|| point.at_coordinates());
+        let (outer, in_map) = match mapped {
+            Some(mapped) if !point.is_member => {
+                let tilted = normal.tilt(&mapped, point.n_shade);
+                (tilted, tilted)
+            }
+            mapped => {
+                let tilted = normal.tilt(&mapped.unwrap_or(*point), n);
+                (ways.out.leave(tilted), ways.to_map.leave(tilted))
+            }
         };
         let in_map = if normal.no_bump_scale {
             in_map

@@ -47,8 +47,9 @@ use crate::pigment::Pigment;
 pub struct TexturePoint {
     /// The position on the surface, in the space of the texture.
     pub position: DVec3,
-    /// Where normals are evaluated, if that is not `position`: under a texture whose pigments alone lie on texture coordinates.
-    pub tilted_at: Option<DVec3>,
+    /// Whether the texture is a member of a patterned one or lies on texture coordinates as a whole: a normal with `uv_mapping` is tilted in
+    /// the texture's space then, not in the world's.
+    pub is_member: bool,
     /// The position in the object's space, if `position` is on texture coordinates of an object with `uv_mapping`.
     pub in_object: Option<DVec3>,
     /// The same position in world space, unaffected by the transformations of textures, pigments and patterns.
@@ -68,7 +69,7 @@ impl TexturePoint {
     pub fn in_space(position: DVec3) -> Self {
         Self {
             position,
-            tilted_at: None,
+            is_member: false,
             in_object: None,
             surface: position,
             n_geom: DVec3::Y,
@@ -95,7 +96,6 @@ impl TexturePoint {
     pub(crate) fn moved_to(&self, position: DVec3, map: impl Fn(DVec3) -> DVec3) -> Self {
         Self {
             position,
-            tilted_at: self.tilted_at.map(&map),
             in_object: self.in_object.map(&map),
             ..*self
         }
@@ -107,23 +107,23 @@ impl TexturePoint {
     pub fn on_surface(&self, in_object: DVec3) -> Self {
         Self {
             in_object: Some(in_object),
-            ..self.at(self.uv.extend(0.0))
+            ..self.at_coordinates()
         }
     }
 
-    /// The same at `(u, v, 0)`, but normals are evaluated where they were.
+    /// The same at `(u, v, 0)`.
     #[must_use]
-    pub(crate) fn on_surface_but_normals(&self) -> Self {
+    pub(crate) fn at_coordinates(&self) -> Self {
+        self.at(self.uv.extend(0.0))
+    }
+
+    /// The same for a member of a texture.
+    #[must_use]
+    pub(crate) fn of_member(self) -> Self {
         Self {
-            tilted_at: self.tilted_at.or(Some(self.position)),
-            ..self.at(self.uv.extend(0.0))
+            is_member: true,
+            ..self
         }
-    }
-
-    /// The same where normals are evaluated.
-    #[must_use]
-    pub(crate) fn for_normals(&self) -> Self {
-        self.at(self.tilted_at.unwrap_or(self.position))
     }
 }
 

@@ -74,8 +74,7 @@ impl From<Surface> for Draft {
 impl Draft {
     fn finish(mut self) -> Surface {
         self.loose.put_into(&mut self.single);
-        let is_patterned = !matches!(self.chooser, Chooser::Single);
-        let mut texture = match (self.chooser, self.choice) {
+        match (self.chooser, self.choice) {
             (Chooser::Single, _) => self.single,
             (Chooser::Average, Choice::Map(map)) => {
                 Surface::Average(map.entries, Box::new(self.modifiers))
@@ -95,72 +94,33 @@ impl Draft {
                     Choice::Nothing => self.single,
                 }
             }
-        };
-        if is_patterned {
-            normals_in_space(&mut texture);
         }
-        texture
     }
 }
 
-/// The texture with everything but its normals on texture coordinates, as POV-Ray's `texture { uv_mapping ... }` shows it.
-fn on_surface_but_normals(texture: Surface) -> Surface {
+/// The texture on texture coordinates, as `texture { uv_mapping ... }` shows it.
+fn on_surface(texture: Surface) -> Surface {
     match texture {
-        Surface::Plain(mut plain) => {
-            if let Some(normal) = &mut plain.normal {
-                normal.uv_mapped = false;
-            }
+        // Only the pigment's place counts.
+        Surface::Plain(mut plain) if plain.normal.is_none() => {
             plain.pigment = match plain.pigment {
                 mapped @ Pigment::UvMapped(_) => mapped,
                 pigment => Pigment::UvMapped(Box::new(pigment)),
             };
             Surface::Plain(plain)
         }
-        Surface::Layered(layers) => {
+        Surface::Layered(layers) if !layers.iter().any(has_normal) => {
             let layers = layers.iter().cloned();
-            Surface::Layered(layers.map(on_surface_but_normals).collect())
+            Surface::Layered(layers.map(on_surface).collect())
         }
         mapped @ Surface::UvMapped(_) => mapped,
-        patterned => Surface::UvMapped(Box::new(patterned)),
+        other => Surface::UvMapped(Box::new(other)),
     }
 }
 
-/// Makes `uv_mapping` of the normals ineffective, as it is in the members of patterned textures.
-fn normals_in_space(texture: &mut Surface) {
-    if !has_mapped_normals(texture) {
-        return;
-    }
-    match texture {
-        Surface::Plain(plain) => {
-            if let Some(normal) = &mut plain.normal {
-                normal.uv_mapped = false;
-            }
-        }
-        Surface::Layered(list)
-        | Surface::Blocks(_, list)
-        | Surface::MaterialMap(_, _, list)
-        | Surface::Shared(_, list) => list.make_mut().iter_mut().for_each(normals_in_space),
-        Surface::Map(_, BlendMap { entries }) | Surface::Average(entries, _) => {
-            let entries = entries.make_mut().iter_mut();
-            entries.for_each(|(_, member)| normals_in_space(member));
-        }
-        Surface::Transformed(_, inner) | Surface::UvMapped(inner) => normals_in_space(inner),
-    }
-}
-
-/// Whether a normal in it has `uv_mapping`.
-fn has_mapped_normals(texture: &Surface) -> bool {
-    match texture {
-        Surface::Plain(plain) => plain.normal.as_ref().is_some_and(|n| n.uv_mapped),
-        Surface::Layered(list)
-        | Surface::Blocks(_, list)
-        | Surface::MaterialMap(_, _, list)
-        | Surface::Shared(_, list) => list.iter().any(has_mapped_normals),
-        Surface::Map(_, BlendMap { entries }) | Surface::Average(entries, _) => {
-            entries.iter().any(|(_, member)| has_mapped_normals(member))
-        }
-        Surface::Transformed(_, inner) | Surface::UvMapped(inner) => has_mapped_normals(inner),
-    }
+/// Whether a layer may have a normal of its own.
+fn has_normal(layer: &Surface) -> bool {
+    !matches!(layer, Surface::Plain(plain) if plain.normal.is_none())
 }
 
 impl Parser<'_> {
@@ -171,6 +131,19 @@ impl Parser<'_> {
             written: true,
             ..Texture::default()
         })
+    }
+
+    /// The name of a texture, as the look of an object.
+    pub(crate) fn named_texture(&mut self) -> PResult<Option<Texture>> {
+        let named = self.accept_thing(|thing| match thing {
+            Thing::Texture(texture) => Some(texture),
+            _ => None,
+        })?;
+        Ok(named.map(|surface| Texture {
+            surface,
+            written: true,
+            ..Texture::default()
+        }))
     }
 
     /// `{ ... }` after `texture` in a declaration; further textures directly after it are layered over it.
@@ -214,9 +187,7 @@ impl Parser<'_> {
 
     fn rest_of_texture(&mut self, closing: Kind, named: Option<Arc<Surface>>) -> PResult<Surface> {
         if named.is_none() && self.accept_word(Word::UvMapping)? {
-            return self
-                .nested(|p| p.texture_items(closing))
-                .map(on_surface_but_normals);
+            return self.nested(|p| p.texture_items(closing)).map(on_surface);
         }
         let base = named.unwrap_or_else(|| Arc::clone(&self.state.default_texture.surface));
         let mut single = Surface::clone(&base);
