@@ -250,6 +250,26 @@ fn files_are_written_and_read() {
     assert!(errors("#write (F, 1)")[0].contains("not open for writing"));
 }
 
+/// The numbers of rounds and the values are POV-Ray's.
+#[test]
+fn a_comma_behind_the_last_value_is_a_round_more() {
+    for (file, names, read) in [
+        ("1,2,3", "A", "1 2 3 "),
+        ("1,2,3,\n", "A", "1 2 3 3 "),
+        ("1,2,\n3,4,\n", "A, B", "1,2 3,4 3,4 "),
+        ("1,2,3,\n", "A, B", "1,2 3,2 "),
+    ] {
+        let mut host = MemoryHost::new().with_file("data.txt", file);
+        let values = names.replace(", ", ", 0, 0), \",\", str(");
+        let text = format!(
+            "#fopen F \"data.txt\" read #while (defined(F)) #read (F, {names}) #debug concat(str({values}, 0, 0), \" \") #end"
+        );
+        let parsed = parse_with(&mut host, &text);
+        assert!(parsed.scene.is_some(), "{file}: {:#?}", parsed.diagnostics);
+        assert_eq!(host.text(strahl_sdl::Stream::Debug), read, "{file}");
+    }
+}
+
 /// As POV-Ray 3.7 writes them.
 #[test]
 fn numbers_in_files_have_six_digits() {

@@ -165,6 +165,9 @@ impl Parser<'_> {
     }
 
     /// Runs `#read (Handle, names ...)`, whose keyword is taken: reads numbers, vectors and strings separated by commas.
+    ///
+    /// As in POV-Ray the file is at its end after its last value, unless a comma follows: then it is when there was no value any more, and
+    /// the variables that got none keep what they have (measured).
     pub(super) fn read(&mut self) -> PResult<()> {
         self.expect(Kind::LeftParen)?;
         let handle = self.raw_name("the name of a file handle")?;
@@ -175,8 +178,9 @@ impl Parser<'_> {
             let found = self.scopes.target(symbol, false);
             let mut target = found.unwrap_or_else(|| self.global_target(symbol));
             self.steps_into(&mut target)?;
-            let value = self.read_value(handle, place)?;
-            self.assign(&target, value, place)?;
+            if let Some(value) = self.read_value(handle, place)? {
+                self.assign(&target, value, place)?;
+            }
         }
         if !self.more_to_read(handle) {
             let target = self.global_target(handle);
@@ -189,14 +193,14 @@ impl Parser<'_> {
         match self.io.open.get(&handle) {
             Some(OpenFile::Read(file, position)) => {
                 let rest = file.lexed.tokens.get(*position..).unwrap_or(&[]);
-                rest.iter()
-                    .any(|t| !matches!(t.kind, Kind::Comma | Kind::End))
+                rest.iter().any(|token| token.kind != Kind::End)
             }
             _ => false,
         }
     }
 
-    fn read_value(&mut self, handle: Symbol, place: Place) -> PResult<Value> {
+    /// The next value of a file; `None` at its end.
+    fn read_value(&mut self, handle: Symbol, place: Place) -> PResult<Option<Value>> {
         let Some(OpenFile::Read(file, position)) = self.io.open.get_mut(&handle) else {
             return Err(self.fail_hint(
                 place,
@@ -208,11 +212,15 @@ impl Parser<'_> {
             file,
             position: *position,
         };
+        if reader.is_at_end() {
+            *position = reader.position;
+            return Ok(None);
+        }
         let value = reader.value();
         *position = reader.position;
         let name = file.source.name.clone();
         match value {
-            Some(value) => Ok(value),
+            Some(value) => Ok(Some(value)),
             None => Err(self.fail_hint(
                 place,
                 format!("`{name}` has no number, vector or string here"),
@@ -243,11 +251,18 @@ impl Reader<'_> {
         token.unwrap_or(Token::END)
     }
 
-    fn value(&mut self) -> Option<Value> {
-        let mut token = self.next();
-        while token.kind == Kind::Comma {
-            token = self.next();
+    /// Skips commas; whether nothing follows them.
+    fn is_at_end(&mut self) -> bool {
+        let kind = |position| self.file.token(position).map_or(Kind::End, |t| t.kind);
+        while kind(self.position) == Kind::Comma {
+            self.position += 1;
         }
+        kind(self.position) == Kind::End
+    }
+
+    /// The value that follows, which is no comma.
+    fn value(&mut self) -> Option<Value> {
+        let token = self.next();
         match token.kind {
             Kind::String => {
                 let text = self.file.lexed.strings.get(token.bits as usize)?;
