@@ -150,7 +150,7 @@ fn what_cannot_be_seen_is_left_out_with_a_warning() {
         "smooth_triangle { 0, y, x, y, 2 * x, y }",
         "quadric { 1, 0, 0, 1 }",
         "polynomial { 3, xyz(0, 0, 0): 1 }",
-        "superellipsoid { <0, 1> }",
+        "superellipsoid { <-1, 1> }",
         "blob { threshold 2 sphere { 0, 1, 1 } }",
         "blob { threshold 0 sphere { 0, 1, 1 } }",
         "polygon { 4, <0, 0>, <1, 0>, <2, 0>, <0, 0> }",

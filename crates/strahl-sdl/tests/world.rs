@@ -127,6 +127,13 @@ fn versions_decide_what_numbers_mean() {
 }
 
 #[test]
+fn a_max_trace_level_above_256_is_256() {
+    let (deep, messages) = scene("global_settings { max_trace_level 300 }");
+    assert_eq!(deep.settings.max_depth, 256);
+    assert!(messages.contains("at most 256"), "{messages}");
+}
+
+#[test]
 fn wrong_numbers_are_errors() {
     for (text, message) in [
         ("global_settings { max_trace_level 0 }", "1 to 256"),

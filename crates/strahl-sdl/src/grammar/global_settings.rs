@@ -11,6 +11,9 @@ use strahl_shade::pov_finish::IridSettings;
 /// The default of `max_trace_level`.
 const TRACE_LEVEL: u32 = 5;
 
+/// The largest `max_trace_level`.
+const DEEPEST: u32 = 256;
+
 /// The version from which on the default noise of patterns is not clamped (`noise_generator 2`); measured with POV-Ray 3.7.
 const RANGE_CORRECTED_SINCE: f64 = 3.5;
 
@@ -264,8 +267,22 @@ impl Parser<'_> {
 
     /// The number after `max_trace_level`.
     pub(crate) fn trace_level(&mut self) -> PResult<()> {
-        let level = self.whole_setting("max_trace_level", 256)?;
-        self.state.global.trace_level = Some(level);
+        let value = self.float()?;
+        let place = self.place();
+        if !(value >= 1.0) {
+            return Err(self.fail(
+                place,
+                format!("max_trace_level must be 1 to 256, not {value}"),
+            ));
+        }
+        if value >= f64::from(DEEPEST) + 1.0 {
+            self.warn(
+                place,
+                format!("max_trace_level is at most {DEEPEST}, as in POV-Ray"),
+            );
+        }
+        // Saturates.
+        self.state.global.trace_level = Some((value as u32).min(DEEPEST));
         Ok(())
     }
 }

@@ -24,6 +24,8 @@ pub(super) fn smooth_triangle(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let (corners, normals) = corners_with_normals(p)?;
         let [a, b, c] = corners;
+        // POV-Ray interpolates between unit vectors (measured).
+        let normals = normals.map(|n| n.try_normalize().unwrap_or(n));
         // Interpolation needs all three normals.
         if normals.contains(&DVec3::ZERO) {
             return Ok(Triangle::try_new(a, c, b).map(Shape::from));

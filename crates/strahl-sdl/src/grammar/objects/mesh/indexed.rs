@@ -115,7 +115,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn expect_word_texture(&mut self) -> PResult<()> {
+    pub(super) fn expect_word_texture(&mut self) -> PResult<()> {
         if self.accept_word(Word::Texture)? {
             return Ok(());
         }

@@ -1,3 +1,4 @@
+use super::blend::blended;
 use super::builder::{Builder, NONE};
 use super::numbered::Numbered;
 use super::{Parts, has_area, texture_number};
@@ -75,6 +76,19 @@ impl Parser<'_> {
                     p.take(token)?;
                     texture = Some(p.texture_block()?);
                 }
+                Some(Word::TextureList) => {
+                    p.take(token)?;
+                    let [a, b, c] = p.braces(|p| {
+                        Ok([
+                            p.corner_texture()?,
+                            p.corner_texture()?,
+                            p.corner_texture()?,
+                        ])
+                    })?;
+                    // The triangle is a mesh of its own.
+                    p.count_parts(64)?;
+                    texture = Some(blended(corners, [&a, &b, &c]));
+                }
                 Some(Word::UvVectors) => {
                     p.take(token)?;
                     let mut three = [[0.0; 2]; 3];
@@ -95,6 +109,18 @@ impl Parser<'_> {
         }
         draft.add(corners, normals, uvs, texture);
         Ok(())
+    }
+}
+
+impl Parser<'_> {
+    /// One of the three textures of a triangle: a name, or `texture { ... }`.
+    fn corner_texture(&mut self) -> PResult<Texture> {
+        self.comma()?;
+        if let Some(named) = self.named_texture()? {
+            return Ok(named);
+        }
+        self.expect_word_texture()?;
+        self.texture_block()
     }
 }
 
