@@ -250,6 +250,21 @@ fn files_are_written_and_read() {
     assert!(errors("#write (F, 1)")[0].contains("not open for writing"));
 }
 
+/// As POV-Ray's, which `+K0.7` makes less than 0.7.
+#[test]
+fn the_clock_has_32_bits() {
+    let options = strahl_sdl::Options {
+        clock: 0.7,
+        ..strahl_sdl::Options::default()
+    };
+    let mut host = MemoryHost::new();
+    let text = "#debug concat(str(clock >= 0.7, 0, 0), str(int(clock * 10), 0, 0), str(clock * 1e9, 0, 0))";
+    let source = strahl_sdl::Source::new("test.pov", text);
+    let parsed = strahl_sdl::parse(source, &options, &mut host);
+    assert!(parsed.scene.is_some(), "{:#?}", parsed.diagnostics);
+    assert_eq!(host.text(strahl_sdl::Stream::Debug), "06699999988");
+}
+
 /// The numbers of rounds and the values are POV-Ray's.
 #[test]
 fn a_comma_behind_the_last_value_is_a_round_more() {

@@ -127,6 +127,14 @@ fn versions_decide_what_numbers_mean() {
 }
 
 #[test]
+fn a_picture_that_is_not_to_be_gray_is_no_matter() {
+    let (_, messages) = scene("global_settings { assumed_gamma 1 hf_gray_16 off }");
+    assert!(!messages.contains("hf_gray_16"), "{messages}");
+    let (_, messages) = scene("global_settings { assumed_gamma 1 hf_gray_16 }");
+    assert!(messages.contains("hf_gray_16 has no effect"), "{messages}");
+}
+
+#[test]
 fn a_max_trace_level_above_256_is_256() {
     let (deep, messages) = scene("global_settings { max_trace_level 300 }");
     assert_eq!(deep.settings.max_depth, 256);

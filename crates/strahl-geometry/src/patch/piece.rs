@@ -71,14 +71,12 @@ impl PatchPlace {
 
     /// Whether it is well within a square.
     pub(super) fn is_within(self, Square { level, i, j }: Square) -> bool {
+        let within = Self::MARGIN..Self::STEPS - Self::MARGIN;
         [(self.u, i), (self.v, j)]
             .into_iter()
             .all(|(place, number)| {
                 let place = place << level;
-                let rest = place & (Self::STEPS - 1);
-                place >> 16 == u32::from(number)
-                    && rest >= Self::MARGIN
-                    && rest < Self::STEPS - Self::MARGIN
+                place >> 16 == u32::from(number) && within.contains(&(place & (Self::STEPS - 1)))
             })
     }
 }

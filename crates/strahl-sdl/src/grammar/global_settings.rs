@@ -102,11 +102,12 @@ impl Parser<'_> {
             }
             Word::HfGray16 => {
                 self.take(token)?;
-                self.switched()?;
-                self.warn(
-                    place,
-                    "hf_gray_16 has no effect: the format of the picture is chosen by its name",
-                );
+                if self.switched()? {
+                    self.warn(
+                        place,
+                        "hf_gray_16 has no effect: the format of the picture is chosen by its name",
+                    );
+                }
             }
             // Text is always UTF-8, which includes ASCII.
             Word::Charset => {
