@@ -253,12 +253,10 @@ fn files_are_written_and_read() {
 /// As POV-Ray's, which `+K0.7` makes less than 0.7.
 #[test]
 fn the_clock_has_32_bits() {
-    let options = strahl_sdl::Options {
-        clock: 0.7,
-        ..strahl_sdl::Options::default()
-    };
+    let mut options = strahl_sdl::Options::default();
+    options.clock = 0.7;
     let mut host = MemoryHost::new();
-    let text = "#debug concat(str(clock >= 0.7, 0, 0), str(int(clock * 10), 0, 0), str(clock * 1e9, 0, 0))";
+    let text = "#debug concat(str((clock >= 0.7), 0, 0), str(int(clock * 10), 0, 0), str(clock * 1e9, 0, 0))";
     let source = strahl_sdl::Source::new("test.pov", text);
     let parsed = strahl_sdl::parse(source, &options, &mut host);
     assert!(parsed.scene.is_some(), "{:#?}", parsed.diagnostics);

@@ -496,7 +496,7 @@ impl Parser<'_> {
             Word::Pi => std::f64::consts::PI,
             Word::Tau => std::f64::consts::TAU,
             Word::True | Word::Yes | Word::On => 1.0,
-            // POV-Ray keeps the clock as a 32-bit number (measured): 0.7 is less than 0.7.
+            // POV-Ray keeps the clock as a 32-bit number (measured): `clock >= 0.7` is false for a clock of 0.7.
             Word::Clock => f64::from(o.clock as f32),
             Word::ClockOn => truth(o.frame.animated),
             Word::ClockDelta => o.frame.clock_delta,

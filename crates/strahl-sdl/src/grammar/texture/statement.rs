@@ -133,12 +133,16 @@ impl Parser<'_> {
         })
     }
 
-    /// The name of a texture, as the look of an object.
-    pub(crate) fn named_texture(&mut self) -> PResult<Option<Texture>> {
-        let named = self.accept_thing(|thing| match thing {
+    fn texture_name(&mut self) -> PResult<Option<Arc<Surface>>> {
+        self.accept_thing(|thing| match thing {
             Thing::Texture(texture) => Some(texture),
             _ => None,
-        })?;
+        })
+    }
+
+    /// The name of a texture, as the look of an object.
+    pub(crate) fn named_texture(&mut self) -> PResult<Option<Texture>> {
+        let named = self.texture_name()?;
         Ok(named.map(|surface| Texture {
             surface,
             written: true,
@@ -163,10 +167,7 @@ impl Parser<'_> {
     /// `{ ... }` after `texture`; a single name is shared, not copied.
     pub(super) fn surface_block(&mut self) -> PResult<Arc<Surface>> {
         self.braces(|p| {
-            let named = p.accept_thing(|thing| match thing {
-                Thing::Texture(texture) => Some(texture),
-                _ => None,
-            })?;
+            let named = p.texture_name()?;
             if let Some(named) = &named
                 && p.peek()?.kind == Kind::RightBrace
             {
@@ -178,10 +179,7 @@ impl Parser<'_> {
 
     /// The items in the brackets of an entry of `texture_map`.
     pub(super) fn texture_items(&mut self, closing: Kind) -> PResult<Surface> {
-        let named = self.accept_thing(|thing| match thing {
-            Thing::Texture(texture) => Some(texture),
-            _ => None,
-        })?;
+        let named = self.texture_name()?;
         self.rest_of_texture(closing, named)
     }
 

@@ -110,9 +110,7 @@ impl Parser<'_> {
         draft.add(corners, normals, uvs, texture);
         Ok(())
     }
-}
 
-impl Parser<'_> {
     /// One of the three textures of a triangle: a name, or `texture { ... }`.
     fn corner_texture(&mut self) -> PResult<Texture> {
         self.comma()?;
