@@ -68,4 +68,6 @@ groups! {
     the_eye_is_in_closed_parts_beside_open_ones,
     bumps_that_keep_their_size_on_scaled_objects,
     a_pattern_takes_over_what_modified_the_colour,
+    spirals_have_a_whole_number_of_arms,
+    black_holes_are_not_repeated_along_axes_with_negative_numbers,
 }

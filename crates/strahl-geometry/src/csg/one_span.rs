@@ -60,24 +60,20 @@ impl Nearest {
 type Holes = ArrayVec<(Span, u32), MOST>;
 
 impl Small {
-    /// Visits the visible surfaces along the ray until the visitor stops; only for intersections.
+    /// Visits the visible surfaces along the ray until the visitor stops; only for intersections. `start` is the leaf that the ray starts
+    /// on, and where the ray is inside of its shape; `None` if it starts elsewhere.
     #[inline(always)]
     pub(super) fn visit_one_span(
         &self,
         leaves: &[Leaf],
         query: &mut Query<'_>,
+        start: Option<(u32, Option<Stay>)>,
         visit: &mut impl FnMut(PrimHit) -> ControlFlow<()>,
     ) -> Result<(), TooClose> {
         // The beginning with its sign reversed, so that both ends are the nearest ones.
         let (mut enter, mut exit) = (Nearest::NONE, Nearest::NONE);
         let mut holes = Holes::new();
         let (far, mut may_show) = (query.alive.max, false);
-        let start = query.start(leaves);
-        if let (Some((_, Some(stay))), Some((number, surface))) = (start, query.from)
-            && leaves[number as usize].is_left_for_good(&stay, surface)
-        {
-            return Ok(());
-        }
         for (n, number) in self.leaf_numbers().enumerate() {
             // The others only clip, which does not matter if the ray meets no visible surface in the range.
             if n == self.visible && !may_show {
@@ -237,14 +233,6 @@ fn visit_around(
 }
 
 impl Query<'_> {
-    /// The leaf that the ray starts on, and where it is inside of its shape; `None` if it starts elsewhere.
-    #[inline(always)]
-    fn start(&self, leaves: &[Leaf]) -> Option<(u32, Option<Stay>)> {
-        let (number, surface) = self.from?;
-        let leaf = &leaves[number as usize];
-        Some((number, leaf.stay(self.ray, Some(surface))))
-    }
-
     /// Whether two parameters, the first one not above the second, are so close that crossings there could coincide; there are none at
     /// infinity.
     #[inline(always)]

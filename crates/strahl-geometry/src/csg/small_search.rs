@@ -101,11 +101,27 @@ impl Small {
         scratch: &mut Scratch,
         mut visit: impl FnMut(PrimHit, &mut Scratch) -> ControlFlow<()>,
     ) -> Result<(), TooClose> {
+        let mut start = None;
+        if self.is_intersection
+            && let Some((number, surface)) = from
+        {
+            let leaf = &leaves[number as usize];
+            let stay = leaf.stay(ray, Some(surface));
+            let alone = self.visible == 1 && leaf.visible;
+            // Most rays from surfaces: nothing else is worked out for them.
+            if stay.is_some_and(|stay| {
+                leaf.is_left_for_good(&stay, surface) || alone && stay.is_crossed_once(surface)
+            }) {
+                return Ok(());
+            }
+            start = Some((number, stay));
+        }
         let Some(mut query) = Query::new(ray, range, from) else {
             return Ok(());
         };
         if self.is_intersection {
-            return self.visit_one_span(leaves, &mut query, &mut |hit| visit(hit, scratch));
+            let mut visit = |hit| visit(hit, scratch);
+            return self.visit_one_span(leaves, &mut query, start, &mut visit);
         }
         if self.is_merge {
             return self.visit_merged(leaves, &query, None, &mut |hit| visit(hit, scratch));

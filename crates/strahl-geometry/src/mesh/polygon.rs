@@ -1,9 +1,10 @@
 use super::axes::{largest_axis, other_axes};
 use super::edge_runs::EdgeRuns;
 use super::shear::RayShear;
-use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
+use crate::primitives::Unfolding;
+use crate::{Cuboid, GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
 use strahl_math::error::{ROUNDOFF, gamma};
-use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
+use strahl_math::{Aabb, DMat3, DVec2, DVec3, Interval, Ray, Transform};
 
 /// The largest distance of corners from the polygon's plane, relative to the largest coordinate: 2⁻¹⁶, some thirty times the
 /// error of coordinates printed with six digits.
@@ -29,6 +30,7 @@ const MANY_EDGES: usize = 8;
 ///
 /// Texture coordinates: the first corner is `(0, 0)`, the second `(1, 0)`, and the last one of the first ring `(0, 1)`, so that they
 /// cover a parallelogram once. (Not the last one itself, if it is much closer to the line through the first two than others.)
+/// [`Polygon::flat_box`] has those of a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     /// All rings, one after the other.
@@ -47,7 +49,16 @@ pub struct Polygon {
     axis: u8,
     /// Whether the first ring runs clockwise as seen from the front, as it does after a mirroring transform.
     flipped: bool,
+    /// The flat box that this polygon is, if it has the texture coordinates of one.
+    flat_box: Option<FlatBox>,
     pub(super) runs: Option<Box<EdgeRuns>>,
+}
+
+/// A box without extent along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct FlatBox {
+    axis: u8,
+    unfolding: Unfolding,
 }
 
 /// Where a ray crosses the plane of a polygon.
@@ -122,6 +133,31 @@ impl Polygon {
         Ok(polygon)
     }
 
+    /// The sheet that a box without extent along an axis (0 to 2) is: a rectangle at the `max` of this axis. Its front shows to larger
+    /// coordinates.
+    ///
+    /// Texture coordinates are those of a [`Cuboid`](crate::Cuboid). A ray sees the face that is turned away from it, as in POV-Ray
+    /// (measured): from above the bottom, from below the top.
+    ///
+    /// # Errors
+    /// A corner is not finite, or the box has no extent along another axis.
+    pub fn flat_box(cuboid: &Cuboid, axis: usize) -> Result<Self, GeometryError> {
+        let (min, max) = (cuboid.min(), cuboid.max());
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let corners = [(false, false), (true, false), (true, true), (false, true)].map(|(s, t)| {
+            let mut corner = max;
+            corner[u] = if s { max[u] } else { min[u] };
+            corner[v] = if t { max[v] } else { min[v] };
+            corner
+        });
+        let mut sheet = Self::try_new(&corners)?;
+        sheet.flat_box = Some(FlatBox {
+            axis: axis as u8,
+            unfolding: cuboid.unfolding(),
+        });
+        Ok(sheet)
+    }
+
     /// Works out the plane and the runs; `None` if there is no plane.
     fn from_parts(
         corners: Box<[DVec3]>,
@@ -138,6 +174,7 @@ impl Polygon {
             up,
             axis: 0,
             flipped,
+            flat_box: None,
             runs: None,
         };
         let front = newell_normal(polygon.rings().next()?)?;
@@ -359,12 +396,27 @@ impl Primitive for Polygon {
             p[i] * up[j] - p[j] * up[i],
             right[i] * p[j] - right[j] * p[i],
         ) / area;
+        let (uv, dpdu, dpdv) = match self.flat_box {
+            None => (uv, right, up),
+            Some(FlatBox { axis, unfolding }) => {
+                let axis = usize::from(axis);
+                let part = cyclic(axis, [0.0, uv.x, uv.y]);
+                let [x, y, z] = cyclic(axis, [DVec3::ZERO, right, up]);
+                let at_max = self.normal.dot(ray.direction) > 0.0;
+                let (part, sides) = (DVec3::from_array(part), DMat3::from_cols(x, y, z));
+                unfolding.at((axis, at_max), part, sides)
+            }
+        };
         SurfacePoint {
             uv,
-            dpdu: right,
-            dpdv: up,
+            dpdu,
+            dpdv,
             ..bare
         }
+    }
+
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        self.flat_box.map(|_| uv)
     }
 
     fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
@@ -384,7 +436,9 @@ impl Primitive for Polygon {
             .map(|&p| map.point_to_world(p))
             .collect();
         let flipped = self.flipped != map.mirrors();
-        Self::from_parts(corners, self.ring_ends.clone(), self.up, flipped).map(Into::into)
+        let mut baked = Self::from_parts(corners, self.ring_ends.clone(), self.up, flipped)?;
+        baked.flat_box = self.flat_box;
+        Some(baked.into())
     }
 }
 
@@ -468,6 +522,11 @@ fn texture_corner(ring: &[DVec3]) -> u32 {
     ring.iter()
         .rposition(|p| height(p) >= 0.5 * highest)
         .unwrap_or(0) as u32
+}
+
+/// The values of the x, y and z axes, given those of `axis` and of the two axes that follow it.
+fn cyclic<T: Copy>(axis: usize, from_axis: [T; 3]) -> [T; 3] {
+    std::array::from_fn(|i| from_axis[(i + 3 - axis) % 3])
 }
 
 fn l1(v: DVec3) -> f64 {

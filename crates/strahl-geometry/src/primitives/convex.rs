@@ -103,6 +103,14 @@ impl Stay {
             outside: false,
         }
     }
+
+    /// Whether a line crosses the solid nowhere but at its start on this surface, as a line from a plane does.
+    #[inline(always)]
+    pub(crate) fn is_crossed_once(&self, surface: SurfaceId) -> bool {
+        let no_other = |end: End| end.t.is_infinite() || end.t == 0.0 && end.facet == surface.facet;
+        self.span
+            .is_some_and(|span| no_other(span.enter) && no_other(span.exit))
+    }
 }
 
 /// The beginning of a list of crossings: for a ray that starts on the surface, its start.

@@ -22,6 +22,7 @@ use strahl_simd::Isa;
 pub struct Cuboid {
     min: DVec3,
     max: DVec3,
+    unfolding: Unfolding,
 }
 
 /// A coordinate of the unfolded box: `start` plus a part of the way along an axis, backwards if `scale` is negative.
@@ -36,11 +37,43 @@ impl Unfolded {
         Self { start, scale, axis }
     }
 
-    /// The coordinate at a place within the box, from 0 to 1 on each axis, and the derivative of the point by it.
-    fn at(&self, part: DVec3, size: DVec3) -> (f64, DVec3) {
-        let mut derivative = DVec3::ZERO;
-        derivative[self.axis] = size[self.axis] / self.scale;
-        (self.start + part[self.axis] * self.scale, derivative)
+    /// The coordinate at a place within a box with these sides, from 0 to 1 along each, and the derivative of the point by it.
+    fn at(&self, part: DVec3, sides: &DMat3) -> (f64, DVec3) {
+        (
+            self.start + part[self.axis] * self.scale,
+            sides.col(self.axis) / self.scale,
+        )
+    }
+}
+
+/// How the faces of a box are unfolded to texture coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Unfolding {
+    /// The axes along which the box is mirrored first.
+    mirrored: [bool; 3],
+}
+
+impl Unfolding {
+    /// The texture coordinates on a face, with the derivatives of the point by them.
+    ///
+    /// `face` is the axis across it and whether it is the one at its end; `part` the place within the box, from 0 to 1 along each of
+    /// the `sides`, which are vectors.
+    pub(crate) fn at(
+        self,
+        face: (usize, bool),
+        mut part: DVec3,
+        mut sides: DMat3,
+    ) -> (DVec2, DVec3, DVec3) {
+        let (axis, at_max) = (face.0, face.1 != self.mirrored[face.0]);
+        for (axis, mirrored) in self.mirrored.into_iter().enumerate() {
+            if mirrored {
+                part[axis] = 1.0 - part[axis];
+                *sides.col_mut(axis) *= -1.0;
+            }
+        }
+        let [right, up] = &UNFOLDED[axis][usize::from(at_max)];
+        let ((u, dpdu), (v, dpdv)) = (right.at(part, &sides), up.at(part, &sides));
+        (DVec2::new(u, v), dpdu, dpdv)
     }
 }
 
@@ -68,7 +101,25 @@ const UNFOLDED: [[[Unfolded; 2]; 2]; 3] = {
 impl Cuboid {
     /// The box between two corners; every coordinate of `min` must be less than that of `max`.
     pub const fn new(min: DVec3, max: DVec3) -> Self {
-        Self { min, max }
+        let mirrored = [false; 3];
+        Self {
+            min,
+            max,
+            unfolding: Unfolding { mirrored },
+        }
+    }
+
+    /// The same box, with the texture coordinates that it has once it is mirrored along these axes (x, y, z). A second mirroring takes
+    /// back the first.
+    pub fn with_mirrored_texture(mut self, axes: [bool; 3]) -> Self {
+        for (mirrored, too) in self.unfolding.mirrored.iter_mut().zip(axes) {
+            *mirrored ^= too;
+        }
+        self
+    }
+
+    pub(crate) const fn unfolding(&self) -> Unfolding {
+        self.unfolding
     }
 
     /// The box with any two opposite corners, in any order.
@@ -222,15 +273,13 @@ impl Primitive for Cuboid {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let (axis, at_max) = face(hit);
         let bare = self.bare_surface_at(ray, hit);
         let size = self.max - self.min;
         let part = (bare.position - self.min) / size;
-        let [right, up] = &UNFOLDED[axis][usize::from(at_max)];
-        let (u, dpdu) = right.at(part, size);
-        let (v, dpdv) = up.at(part, size);
+        let sides = DMat3::from_diagonal(size);
+        let (uv, dpdu, dpdv) = self.unfolding.at(face(hit), part, sides);
         SurfacePoint {
-            uv: DVec2::new(u, v),
+            uv,
             dpdu,
             dpdv,
             ..bare
@@ -265,8 +314,12 @@ impl Primitive for Cuboid {
         let m = map.linear();
         let scale = DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
         let along_the_axes = m == DMat3::from_diagonal(scale) && scale.cmpgt(DVec3::ZERO).all();
-        along_the_axes
-            .then(|| Self::new(map.point_to_world(self.min), map.point_to_world(self.max)).into())
+        let baked = Self {
+            min: map.point_to_world(self.min),
+            max: map.point_to_world(self.max),
+            ..*self
+        };
+        along_the_axes.then(|| baked.into())
     }
 }
 

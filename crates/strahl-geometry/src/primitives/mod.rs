@@ -17,6 +17,7 @@ mod torus;
 
 pub use cone::Cone;
 pub use cuboid::Cuboid;
+pub(crate) use cuboid::Unfolding;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
 pub use lemon::Lemon;

@@ -437,14 +437,7 @@ fn rectangle(shape: &Shape) -> Option<Shape> {
     let (Some(axis), None) = (flat.next(), flat.next()) else {
         return None;
     };
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let corners = [(false, false), (true, false), (true, true), (false, true)].map(|(s, t)| {
-        let mut corner = max;
-        corner[u] = if s { max[u] } else { min[u] };
-        corner[v] = if t { max[v] } else { min[v] };
-        corner
-    });
-    Polygon::try_new(&corners).map(Shape::from).ok()
+    Polygon::flat_box(cuboid, axis).map(Shape::from).ok()
 }
 
 pub(super) fn visible(v: Visibility) -> u8 {

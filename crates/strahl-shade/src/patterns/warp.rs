@@ -68,8 +68,8 @@ pub struct BlackHole {
     pub falloff: f64,
     /// Whether the pattern is pushed away.
     pub inverse: bool,
-    /// Edge lengths of the blocks in which the hole is repeated; 0 is no repetition along that axis. A hole that isn't wholly in its block
-    /// is moved up and the block made longer, until it is (measured).
+    /// Edge lengths of the blocks in which the hole is repeated; 0 or less is no repetition along that axis. A hole that isn't wholly in its
+    /// block is moved up and the block made longer, until it is (measured).
     pub repeat: DVec3,
 }
 
@@ -88,7 +88,7 @@ impl BlackHole {
 
     fn apply(&self, p: DVec3) -> DVec3 {
         let mut from_center = p - self.center;
-        for axis in (0..3).filter(|axis| self.repeat[*axis] != 0.0) {
+        for axis in (0..3).filter(|axis| self.repeat[*axis] > 0.0) {
             let center = self.center[axis].max(self.radius);
             let length = self.repeat[axis].max(center + self.radius);
             let corner = (p[axis] / length).floor() * length;

@@ -4,7 +4,7 @@ use super::Writer;
 impl Writer {
     /// One transform of any kind.
     pub(super) fn transform(&mut self) -> Node {
-        match self.dice.below(8) {
+        match self.dice.below(9) {
             0 | 1 => list!["rotate", self.point(90.0)],
             2 => list!["rotate", self.dice.number(-90.0, 90.0), "* y"],
             3 => list!["translate", self.point(0.8)],
@@ -17,7 +17,13 @@ impl Writer {
                     self.dice.number(0.4, 1.6),
                 ]
             ],
-            6 => {
+            6 => words(self.dice.pick(&[
+                "scale <-1, 1, 1>",
+                "scale <1, -1, 1>",
+                "scale <1, 1.25, -1>",
+                "scale -1",
+            ])),
+            7 => {
                 let inner = self.dice.pick(&["", "inverse"]);
                 let transform = self.transform();
                 block(

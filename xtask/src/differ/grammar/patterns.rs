@@ -29,7 +29,7 @@ impl Writer {
             21 => list!["gradient", self.direction()],
             22 => words(
                 self.dice
-                    .pick(&["spiral1 3", "spiral2 2", "spiral1 1", "spiral2 5"]),
+                    .pick(&["spiral1 3", "spiral2 2", "spiral1 1.7", "spiral2 5"]),
             ),
             23 => list![
                 "quilted control0",

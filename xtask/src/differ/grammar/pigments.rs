@@ -3,8 +3,17 @@ use super::Writer;
 
 impl Writer {
     pub(super) fn pigment(&mut self, depth: usize) -> Node {
-        let body = self.pigment_body(depth);
-        block(Sort::Other, "pigment", vec![needed(body)])
+        let mut parts = self.may_map(6);
+        parts.push(needed(self.pigment_body(depth)));
+        block(Sort::Other, "pigment", parts)
+    }
+
+    /// `uv_mapping` with this chance in percent.
+    pub(super) fn may_map(&mut self, percent: usize) -> Vec<Part> {
+        match self.dice.chance(percent) {
+            true => vec![optional(words("uv_mapping"))],
+            false => vec![],
+        }
     }
 
     /// The inside of the braces of a pigment.

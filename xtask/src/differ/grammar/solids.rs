@@ -3,16 +3,21 @@ use super::Writer;
 
 impl Writer {
     pub(super) fn box_corners(&mut self) -> Vec<Part> {
-        let low = Node::from([
+        let low = [
             self.dice.number(-1.2, -0.3),
             self.dice.number(-1.2, -0.3),
             self.dice.number(-1.2, -0.3),
-        ]);
-        let high = Node::from([
+        ];
+        let mut high = [
             self.dice.number(0.3, 1.2),
             self.dice.number(0.3, 1.2),
             self.dice.number(0.3, 1.2),
-        ]);
+        ];
+        if self.dice.chance(8) {
+            let axis = self.dice.below(3);
+            high[axis] = low[axis];
+        }
+        let (low, high) = (Node::from(low), Node::from(high));
         vec![needed(match self.dice.chance(10) {
             true => list![high, ",", low],
             false => list![low, ",", high],

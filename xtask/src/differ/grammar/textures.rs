@@ -28,7 +28,8 @@ impl Writer {
         };
         match kind {
             0 => {
-                let mut parts = vec![optional(self.pigment(depth))];
+                let mut parts = self.may_map(4);
+                parts.push(optional(self.pigment(depth)));
                 if self.dice.chance(30) {
                     parts.push(optional(self.normal(depth)));
                 }

@@ -195,14 +195,18 @@ impl Draft {
         }
     }
 
+    /// Whether straight lines stay straight.
+    fn is_flat(&self) -> bool {
+        matches!(
+            self.projection,
+            Projection::Perspective | Projection::Orthographic
+        )
+    }
+
     /// An angle of 0, which exporters write, does not count for flat pictures; but an orthographic camera with it is no wider than a perspective
     /// one, whether `right` and `up` are given or not (measured).
     fn drop_no_angle(&mut self) {
-        let is_flat = matches!(
-            self.projection,
-            Projection::Perspective | Projection::Orthographic
-        );
-        if is_flat && matches!(self.angle, Some((0.0, _))) {
+        if self.is_flat() && matches!(self.angle, Some((0.0, _))) {
             self.angle = None;
             self.sized = false;
         }
@@ -320,7 +324,8 @@ impl Parser<'_> {
                     None
                 };
                 draft.angle = Some((horizontal, vertical));
-                if let Some(slope) = draft.slope().filter(|_| draft.in_order) {
+                let acts = draft.in_order && draft.is_flat();
+                if let Some(slope) = draft.slope().filter(|_| acts) {
                     draft.fit_direction(slope);
                 }
             }

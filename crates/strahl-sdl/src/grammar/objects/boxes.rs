@@ -1,7 +1,9 @@
+use super::Shared;
 use crate::grammar::Entity;
 use crate::parser::{PResult, Parser};
 use strahl_geometry::{Cuboid, GeometryError, Shape};
-use strahl_math::DVec3;
+use strahl_math::{DMat3, DVec3, Transform};
+use strahl_scene::{Object, ObjectKind};
 
 /// The thickness of a box that is flat along one axis, relative to its size and place.
 const THIN: f64 = 8.0 * f64::EPSILON;
@@ -47,4 +49,55 @@ pub(super) fn cuboid(p: &mut Parser<'_>) -> PResult<Entity> {
         }
         Ok(Cuboid::try_new(cuboid.min(), cuboid.max()).map(Shape::from))
     })
+}
+
+impl Parser<'_> {
+    /// Keeps the texture coordinates of boxes in an object from being mirrored by a `scale` that follows.
+    ///
+    /// As in POV-Ray (measured) `scale` and `translate` move the corners of a box until it is transformed in another way, so one that is
+    /// mirrored shows its texture as every other box.
+    ///
+    /// # Errors
+    /// If there are too many parts.
+    pub(super) fn scale_boxes(&mut self, object: &mut Object, scale: &Transform) -> PResult<()> {
+        let mirrored = scale.linear().to_cols_array_2d();
+        let mirrored = std::array::from_fn(|axis| mirrored[axis][axis] < 0.0);
+        if mirrored == [false; 3] {
+            return Ok(());
+        }
+        if uses_coordinates(object, &self.state.shared) {
+            self.expand_instances(object)?;
+        }
+        let mut waiting = vec![object];
+        while let Some(object) = waiting.pop() {
+            let linear = object.transform.as_ref().map(|map| map.linear());
+            if linear.is_some_and(|m| m != DMat3::from_diagonal(m.diagonal())) {
+                continue;
+            }
+            match &mut object.kind {
+                ObjectKind::Shape(Shape::Cuboid(cuboid)) => {
+                    *cuboid = cuboid.with_mirrored_texture(mirrored);
+                }
+                ObjectKind::Csg { children, .. } => waiting.extend(&mut children.0),
+                ObjectKind::Shape(_) | ObjectKind::Instance(_) | ObjectKind::Light(_) => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether something of an object has a texture on texture coordinates.
+fn uses_coordinates(object: &Object, shared: &Shared) -> bool {
+    let mut waiting = vec![object];
+    while let Some(object) = waiting.pop() {
+        if object.uv_mapped || object.material.as_ref().is_some_and(|m| m.uses_uv()) {
+            return true;
+        }
+        match &object.kind {
+            ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
+            ObjectKind::Instance(id) => waiting.extend(shared.kind_of(*id)),
+            ObjectKind::Shape(_) | ObjectKind::Light(_) => {}
+        }
+    }
+    false
 }

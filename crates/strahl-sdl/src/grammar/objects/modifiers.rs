@@ -102,6 +102,9 @@ impl Parser<'_> {
 
     fn modifier(&mut self, entity: &mut Entity, draft: &mut Draft, token: Token) -> PResult<bool> {
         if let Some(map) = self.transformation(token)? {
+            if token.is(Word::Scale) {
+                self.scale_boxes(&mut entity.object, &map)?;
+            }
             entity.transform(&map);
             for bound in &mut draft.bounds {
                 transform(bound, &map);

@@ -73,8 +73,9 @@ static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternPar
     }),
     (Word::Slope, |p| p.slope_pattern()),
     (Word::Spherical, |_| Ok(Pattern::Spherical)),
-    (Word::Spiral1, |p| p.float().map(Pattern::Spiral1)),
-    (Word::Spiral2, |p| p.float().map(Pattern::Spiral2)),
+    // As in POV-Ray (measured) the number of arms is whole.
+    (Word::Spiral1, |p| Ok(Pattern::Spiral1(p.float()?.trunc()))),
+    (Word::Spiral2, |p| Ok(Pattern::Spiral2(p.float()?.trunc()))),
     (Word::Spotted, |_| Ok(Pattern::Bozo)),
     (Word::Square, |_| Ok(Pattern::Square)),
     (Word::Tiling, |p| p.tiling()),
