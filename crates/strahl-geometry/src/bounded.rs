@@ -28,6 +28,13 @@ impl Bounded {
         &self.shape
     }
 
+    /// A box around all that bounds have in common, in their space: rays that meet it nowhere don't see the shape.
+    pub fn seen_through(&self) -> Aabb {
+        (self.bounds.iter()).fold(Aabb::EVERYTHING, |all, bound| {
+            all.intersection(&bound.bounds())
+        })
+    }
+
     /// The bounds of a solid, if they are in the space that `to_outer` leads to from that of the shape.
     pub(crate) fn bounds_in(&self, to_outer: Option<&Transform>) -> Option<&[Arc<Csg>]> {
         let here = match (&self.map, to_outer) {

@@ -10,33 +10,52 @@ use strahl_math::{Aabb, Interval, Ray, Transform};
 pub(crate) struct ShapeUse {
     pub(crate) shape: Shape,
     pub(crate) transform: Option<Box<Transform>>,
-    /// The box around the shape in its own space, where it tells rays apart that the box in the group's space does not.
-    pub(crate) own_box: Option<Box<Aabb>>,
+    /// A box for which rays are tested before the shape.
+    pub(crate) early_box: Option<Box<EarlyBox>>,
     /// Object and material; CSG trees have one per leaf.
     pub(crate) appearance: Appearances,
     /// Where its inside is, if that is not what the surface says.
     pub(crate) inside: Option<Box<Inside>>,
 }
 
-impl ShapeUse {
-    /// The box around a shape in its own space, if rays should be tested for it before they are for the shape.
+/// A box that rays have to meet before the test for a shape is worth its time.
+#[derive(Clone, Debug)]
+pub(crate) enum EarlyBox {
+    /// Around the shape, in its own space.
     ///
-    /// Rays that reach the shape have met the box around it in the space of the group. If the map turns the shape, a ray in three misses the
-    /// smaller box along its own axes.
-    pub(crate) fn own_box(shape: &Shape, map: &Transform) -> Option<Box<Aabb>> {
-        if !(shape.wants_box() && map.turns_boxes()) {
-            return None;
-        }
+    /// Rays that reach the shape have met the box around it in the space of the group. If the map turns the shape, a ray in three misses
+    /// the smaller box along its own axes.
+    Own(Aabb),
+    /// Around the bounds through which an endless shape is seen, in the space of the group: a ray that meets it nowhere does not see the
+    /// shape, and one that does may meet the shape anywhere.
+    Bounds(Aabb),
+}
+
+impl ShapeUse {
+    /// The box for which rays should be tested before a shape; the map is from its space to that of the group.
+    pub(crate) fn early_box(shape: &Shape, map: Option<&Transform>) -> Option<Box<EarlyBox>> {
         let bounds = shape.bounds();
-        (bounds.is_bounded() && !bounds.is_empty()).then(|| Box::new(bounds))
+        let is_useful = |bounds: &Aabb| bounds.is_bounded() && !bounds.is_empty();
+        match shape {
+            Shape::Bounded(bounded) if !bounds.is_bounded() => {
+                let around = bounded.seen_through();
+                is_useful(&around).then(|| Box::new(EarlyBox::Bounds(around)))
+            }
+            _ => {
+                let turned = shape.wants_box() && map.is_some_and(Transform::turns_boxes);
+                (turned && is_useful(&bounds)).then(|| Box::new(EarlyBox::Own(bounds)))
+            }
+        }
     }
 
     /// Whether a ray in the space of the shape may meet it in the range.
     #[inline(always)]
     pub(crate) fn may_be_met(&self, ray: &Ray, range: Interval) -> bool {
-        self.own_box
-            .as_ref()
-            .is_none_or(|own| own.may_be_met(ray, range))
+        match self.early_box.as_deref() {
+            Some(EarlyBox::Own(own)) => own.may_be_met(ray, range),
+            // The shape itself asks its bounds.
+            Some(EarlyBox::Bounds(_)) | None => true,
+        }
     }
 }
 

@@ -1148,3 +1148,33 @@ fn a_declared_object_may_stand_in_the_braces_of_any() {
     assert_eq!(scene.objects.0.len(), 5, "{messages:?}");
     assert!(messages.is_empty(), "{messages:?}");
 }
+
+#[test]
+fn a_point_that_misses_the_first_by_rounding_closes_the_curve() {
+    let ring = |miss: &str| {
+        format!(
+            "<{miss}, 0>, <1, 0>, <1, 1>, <0, 0>,
+             <{miss} + 0.1, 0.05>, <0.9, 0.05>, <0.9, 0.8>, <0.1, 0.05>"
+        )
+    };
+    for (miss, warnings) in [("0", 0), ("9e-11", 0), ("-1e-15", 0), ("1.1e-10", 1)] {
+        let points = ring(miss);
+        for (kind, text) in [
+            ("polygon", format!("polygon {{ 8, {points} }}")),
+            ("prism", format!("prism {{ 0, 1, 8, {points} }}")),
+        ] {
+            let (scene, messages) = scene(&text);
+            assert_eq!(messages.len(), warnings, "{kind} {miss}: {messages:?}");
+            let ObjectKind::Shape(shape) = &scene.objects.0[0].kind else {
+                panic!("{kind} is a shape");
+            };
+            match shape {
+                Shape::Polygon(polygon) => {
+                    assert_eq!(polygon.rings().count(), 2 - warnings, "{kind} {miss}");
+                }
+                Shape::Prism(prism) => assert_eq!(prism.outline().gaps(), warnings, "{miss}"),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+}

@@ -363,7 +363,7 @@ impl Texture {
                     None => 0,
                     Some(color) => (color.rgb.r * 255.0).round() as usize,
                 };
-                if let Some(texture) = textures.get(index % textures.len().max(1)) {
+                if let Some(texture) = textures.get(texture_of(index, textures.len())) {
                     visit(texture, &inner, &modifiers.warps, 1.0);
                 }
             }
@@ -560,6 +560,16 @@ impl PlainTexture {
         if stack.above.gray_value().abs() < out.bailout {
             stack.above = Color::BLACK;
         }
+    }
+}
+
+/// The texture that a value of a material map selects among `count`. As in POV-Ray (measured) larger values begin again, but `count` itself
+/// is the last one.
+fn texture_of(value: usize, count: usize) -> usize {
+    match value {
+        value if value > count => value % count.max(1),
+        value if value == count => count.saturating_sub(1),
+        value => value,
     }
 }
 

@@ -7,6 +7,9 @@ use crate::{
 };
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
+/// A point as near as this to the first one of its curve closes the curve, as in POV-Ray (measured).
+const CLOSED: f64 = 1e-10;
+
 /// How the outline of a [`Prism`] changes with the height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrismSweep {
@@ -35,7 +38,7 @@ pub struct Prism {
 impl Prism {
     /// A prism between two heights, in either order, over the curves that the points (x and z) describe.
     ///
-    /// A curve ends where its first point is repeated, and the next point begins another one. Splines that need points beside
+    /// A curve ends where its first point is repeated (or missed by no more than 10⁻¹⁰, as by programs that compute it), and the next point begins another one. Splines that need points beside
     /// the curve have them before the first and (cubic ones) behind the last point of each curve; of a Bézier curve every fourth
     /// point may be the last. A curve that does not come back is closed by a line ([`Outline::gaps`] tells).
     ///
@@ -51,9 +54,16 @@ impl Prism {
         let mut builder = OutlineBuilder::default();
         let mut rest = points;
         while !rest.is_empty() {
-            let (curve, others) = rest.split_at(curve_length(spline, rest));
+            let (before, after) = spline.surplus();
+            let end = curve_end(spline, rest);
+            let length = end.map_or(rest.len(), |end| (end + 1 + after).min(rest.len()));
+            let (curve, others) = rest.split_at(length);
             rest = others;
-            let pieces = spline.pieces(curve);
+            let mut curve = curve.to_vec();
+            if let Some(end) = end {
+                curve[end] = curve[before];
+            }
+            let pieces = spline.pieces(&curve);
             if let Some(first) = pieces.first() {
                 builder.move_to(first.start());
                 for piece in pieces {
@@ -101,18 +111,14 @@ impl Prism {
     }
 }
 
-/// How many of the points belong to the first curve.
-fn curve_length(spline: Spline, points: &[DVec2]) -> usize {
-    let (before, after) = spline.surplus();
+/// The number of the point in which the first curve comes back to its first point.
+fn curve_end(spline: Spline, points: &[DVec2]) -> Option<usize> {
+    let (before, _) = spline.surplus();
     let step = if spline == Spline::Bezier { 4 } else { 1 };
-    let Some(first) = points.get(before) else {
-        return points.len();
-    };
+    let first = *points.get(before)?;
     // The last point of a Bézier piece is the fourth of four.
     let mut ends = (before + step.max(2) - 1..points.len()).step_by(step);
-    let last = ends.find(|&i| points.get(i) == Some(first));
-    let length = last.map_or(points.len(), |last| last + 1 + after);
-    length.min(points.len())
+    ends.find(|&i| (points[i] - first).abs().max_element() <= CLOSED)
 }
 
 /// From the space of prisms, whose axis is y, to that of extrusions, whose axis is z, and back.

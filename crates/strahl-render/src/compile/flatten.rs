@@ -49,9 +49,9 @@ impl FlatGroup {
             }
             (_, appearance) => {
                 self.shapes.push(ShapeUse {
+                    early_box: ShapeUse::early_box(&shape, None),
                     shape,
                     transform: None,
-                    own_box: None,
                     appearance,
                     inside: None,
                 });
@@ -408,7 +408,7 @@ impl Pass {
         group.shapes.push(ShapeUse {
             shape: shape.clone(),
             transform: Some(Box::new(todo.transform)),
-            own_box: ShapeUse::own_box(shape, &todo.transform),
+            early_box: ShapeUse::early_box(shape, Some(&todo.transform)),
             appearance: Appearances::One(appearance),
             inside: None,
         });

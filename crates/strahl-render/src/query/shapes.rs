@@ -3,13 +3,14 @@
 use super::kinds::Query;
 use crate::hit::{Hit, Origin};
 use crate::scene::RenderGroup;
+use crate::uses::EarlyBox;
 use strahl_geometry::blocks::PacketSpans;
 use strahl_geometry::{PrimHit, Primitive, Scratch, Shape, SurfaceId};
-use strahl_math::{Aabb, Interval, Ray, Transform};
+use strahl_math::{Interval, Ray, Transform};
 
 /// A shape of a group, as a primitive that [has no filter](crate::prim::Prim::unfiltered_shape).
 pub(super) struct UnfilteredShape<'g> {
-    pub(super) own_box: Option<&'g Aabb>,
+    pub(super) early_box: Option<&'g EarlyBox>,
     pub(super) shape: &'g Shape,
     pub(super) transform: Option<&'g Transform>,
     /// The number of its first element, in the group.
@@ -25,7 +26,7 @@ impl<'g> UnfilteredShape<'g> {
         let used = &group.shapes[index as usize];
         let first = group.first_id(id);
         Self {
-            own_box: used.own_box.as_deref(),
+            early_box: used.early_box.as_deref(),
             shape: &used.shape,
             transform: used.transform.as_deref(),
             first,
@@ -42,11 +43,12 @@ impl<'g> UnfilteredShape<'g> {
         }
     }
 
-    /// Whether a ray may meet it in the range, as far as the box in its own space tells.
+    /// Whether a ray may meet it in the range, as far as its box tells.
     #[inline(always)]
     pub(super) fn may_be_met(&self, ray: &Ray, range: Interval) -> bool {
-        match (self.own_box, self.transform) {
-            (Some(own), Some(map)) => own.may_be_met(&map.ray_to_object(ray), range),
+        match (self.early_box, self.transform) {
+            (Some(EarlyBox::Own(own)), Some(map)) => own.may_be_met(&map.ray_to_object(ray), range),
+            (Some(EarlyBox::Bounds(bounds)), _) => bounds.may_be_met(ray, Interval::FORWARD),
             _ => true,
         }
     }

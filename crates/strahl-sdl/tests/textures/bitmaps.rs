@@ -53,6 +53,28 @@ fn material_maps_choose_by_the_index_in_a_palette() {
     assert_eq!(seen(0.75), Color::new(0.0, 1.0, 0.0));
 }
 
+/// As in POV-Ray (measured with a picture of 256 codes and 7 textures).
+#[test]
+fn codes_of_a_material_map_begin_again_behind_their_count() {
+    let mut host = MemoryHost::new().with_file(
+        "codes.ppm",
+        b"P6 8 1 255\n\x00\0\0\x01\0\0\x02\0\0\x03\0\0\x04\0\0\x05\0\0\x06\0\0\x07\0\0".to_vec(),
+    );
+    let text = "sphere { 0, 1 texture { material_map { ppm \"codes.ppm\"
+        texture { pigment { rgb 0 } } texture { pigment { rgb 1 } } texture { pigment { rgb 2 } } } } }";
+    let scene = parse_with(&mut host, text).scene.expect("a scene");
+    let material = scene.objects.0[0].material.as_ref().unwrap();
+    let texture = material.texture.clone().unwrap().0;
+    let seen = |code: f64| {
+        let point = TexturePoint::in_space(DVec3::new((code + 0.5) / 8.0, 0.5, 0.0));
+        let mut paint = strahl_shade::texture::TexturePaint::default();
+        texture.layers_at(&point, 1.0, &mut paint);
+        paint.layers[0].color.rgb.r
+    };
+    let textures: Vec<f64> = (0..8).map(|code| seen(f64::from(code))).collect();
+    assert_eq!(textures, [0.0, 1.0, 2.0, 2.0, 1.0, 2.0, 0.0, 1.0]);
+}
+
 /// A picture of one grey texel with code 128 in three formats: BMP, whose codes are usually sRGB; PPM, which doesn't specify
 /// them; and HDR, which is linear.
 fn one_texel() -> MemoryHost {

@@ -29,6 +29,15 @@ pub(super) struct Inner {
     pub(super) along: DVec3,
 }
 
+/// The part of a ray within a field.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chord {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// The field where the ray's line is nearest to the centre or the axis: a bound of it, positive or negative as the component is, but for rounding.
+    pub(super) most: f64,
+}
+
 /// A part of a component, on which the squared distance is one polynomial of degree 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
@@ -141,12 +150,12 @@ impl BlobComponent {
         }
     }
 
-    /// The intervals of a ray within the field, part by part.
+    /// The intervals of a ray within the field, part by part, with a bound of the field on each.
     #[inline]
-    pub(super) fn stretches(&self, inner: &Inner, mut visit: impl FnMut(Part, f64, f64)) {
+    pub(super) fn stretches(&self, inner: &Inner, mut visit: impl FnMut(Part, Chord)) {
         if self.length == 0.0 {
-            if let Some((low, high)) = in_unit_ball(inner.start, inner.along) {
-                visit(Part::Ball, low, high);
+            if let Some(chord) = self.chord(inner.start, inner.along) {
+                visit(Part::Ball, chord);
             }
             return;
         }
@@ -173,14 +182,37 @@ impl BlobComponent {
             (behind, last, f64::INFINITY),
         ] {
             let (start, along) = self.metric(part, inner);
-            if let Some((low, high)) = in_unit_ball(start, along) {
-                let low = if low > from { low } else { from };
-                let high = if high < to { high } else { to };
-                if low < high {
-                    visit(part, low, high);
+            if let Some(mut chord) = self.chord(start, along) {
+                chord.low = if chord.low > from { chord.low } else { from };
+                chord.high = if chord.high < to { chord.high } else { to };
+                if chord.low < chord.high {
+                    visit(part, chord);
                 }
             }
         }
+    }
+
+    /// The part of a line within the unit ball about the origin; for a point (no direction) everything or nothing.
+    #[inline]
+    fn chord(&self, start: DVec3, along: DVec3) -> Option<Chord> {
+        let square = along.length_squared();
+        let (middle, close) = if square == 0.0 {
+            (0.0, 1.0 - start.length_squared())
+        } else {
+            let middle = -start.dot(along) / square;
+            (middle, 1.0 - (start + along * middle).length_squared())
+        };
+        // Infinite without a direction; false for NaN, too.
+        let half = close / square;
+        if !(half > 0.0) {
+            return None;
+        }
+        let half = half.sqrt();
+        Some(Chord {
+            low: middle - half,
+            high: middle + half,
+            most: self.strength * close * close,
+        })
     }
 
     /// The vector whose length is the distance on a part: `start + s along`.
@@ -236,21 +268,4 @@ impl BlobComponent {
             outward * (-4.0 * self.strength * close),
         )
     }
-}
-
-/// The interval of a line within the unit ball about the origin; for a point (no direction) everything or nothing.
-#[inline]
-fn in_unit_ball(start: DVec3, along: DVec3) -> Option<(f64, f64)> {
-    let square = along.length_squared();
-    if square == 0.0 {
-        return (start.length_squared() < 1.0).then_some((f64::NEG_INFINITY, f64::INFINITY));
-    }
-    let middle = -start.dot(along) / square;
-    let half = (1.0 - (start + along * middle).length_squared()) / square;
-    // False for NaN, too.
-    if !(half > 0.0) {
-        return None;
-    }
-    let half = half.sqrt();
-    Some((middle - half, middle + half))
 }

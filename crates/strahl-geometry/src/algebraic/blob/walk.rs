@@ -1,5 +1,5 @@
 use super::super::event::{Event, Question};
-use super::component::{Inner, Part};
+use super::component::{Chord, Inner, Part};
 use super::{Blob, BlobComponent};
 use std::ops::ControlFlow;
 use strahl_accel::{Accelerator, TraversalStats, Visitor};
@@ -26,6 +26,8 @@ struct Piece {
     component: u32,
     part: Part,
     strength: f64,
+    /// A bound of the field, see [`Chord::most`].
+    most: f64,
 }
 
 impl Pieces {
@@ -60,13 +62,15 @@ impl Visitor for Collector<'_> {
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
         if let Some(component) = self.components.get(id as usize) {
             let inner = component.inner(self.start, self.along);
-            component.stretches(&inner, |part, low, high| {
+            component.stretches(&inner, |part, chord| {
+                let Chord { low, high, most } = chord;
                 self.list.push(Piece {
                     low,
                     high,
                     component: id,
                     part,
                     strength: component.strength(),
+                    most,
                 });
             });
         }
@@ -148,6 +152,11 @@ impl Blob {
         if question.on_surface {
             pieces.list.retain(|piece| piece.high > 0.0);
         }
+        // Most rays near a blob miss it: they meet its fields where these are weak.
+        if !question.on_surface && self.is_out_of_reach(pieces.list.iter()) {
+            pieces.list.clear();
+            return;
+        }
         let key = |p: &Piece| (p.component, p.part);
         pieces
             .list
@@ -156,6 +165,13 @@ impl Blob {
         pieces.places.extend(ends);
         pieces.places.sort_unstable_by(f64::total_cmp);
         pieces.places.dedup();
+    }
+
+    /// Whether the field is certainly below the threshold where no more than these pieces are, by more than all errors of the polynomials.
+    fn is_out_of_reach<'p>(&self, pieces: impl Iterator<Item = &'p Piece>) -> bool {
+        const SURELY: f64 = 1.0 - 1e-9;
+        let most: f64 = pieces.map(|p| p.most).filter(|most| *most > 0.0).sum();
+        most < self.threshold * SURELY
     }
 }
 
@@ -215,13 +231,12 @@ impl Walk<'_> {
         let threshold = self.blob.threshold;
         let width = high - low;
         let pieces = || active.iter().filter_map(|i| list.get(*i as usize));
-        let attraction: f64 = pieces().map(|p| p.strength).filter(|s| *s > 0.0).sum();
         let mut stretch = Stretch {
             low,
             width,
             coefficients: [threshold, 0.0, 0.0, 0.0, 0.0],
             error: 0.0,
-            empty: attraction < threshold && !on_surface,
+            empty: !on_surface && self.blob.is_out_of_reach(pieces()),
         };
         if stretch.empty {
             return stretch;

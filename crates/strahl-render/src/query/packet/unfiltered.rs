@@ -5,6 +5,7 @@ use super::super::shapes::UnfilteredShape;
 use super::{Together, are_dense, fill_packet};
 use crate::activity::Phase;
 use crate::hit::Hit;
+use crate::uses::EarlyBox;
 use strahl_accel::{PACKET, lanes_of};
 use strahl_geometry::blocks::{PacketRays, PacketSpans};
 use strahl_geometry::{Csg, PacketRanges, PrimHit, Primitive, Scratch, Shape, SurfaceId};
@@ -69,7 +70,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         lanes
     }
 
-    /// Those of the lanes whose rays may meet a shape, as far as the box in its own space tells.
+    /// Those of the lanes whose rays may meet a shape, as far as its box tells.
     #[inline(always)]
     fn lanes_near(
         &mut self,
@@ -77,12 +78,20 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         lanes: u32,
         t_max: &[f64; PACKET],
     ) -> u32 {
-        let Some(own) = shape.own_box else {
-            return lanes;
-        };
         let min = self.asked.min;
-        self.coordinates()
-            .may_meet(own, shape.transform, lanes, min, t_max)
+        match shape.early_box {
+            None => lanes,
+            Some(EarlyBox::Own(own)) => {
+                let map = shape.transform;
+                self.coordinates().may_meet(own, map, lanes, min, t_max)
+            }
+            Some(EarlyBox::Bounds(bounds)) => {
+                let Interval { min, max } = Interval::FORWARD;
+                let everywhere = &[max; PACKET];
+                self.coordinates()
+                    .may_meet(bounds, None, lanes, min, everywhere)
+            }
+        }
     }
 
     /// The rays coordinate by coordinate.

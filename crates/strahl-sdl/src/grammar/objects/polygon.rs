@@ -3,9 +3,12 @@ use crate::parser::{PResult, Parser};
 use strahl_geometry::Polygon;
 use strahl_math::DVec3;
 
+/// A corner as near as this to the first one of its ring closes the ring, as in POV-Ray (measured).
+const CLOSED: f64 = 1e-10;
+
 /// `polygon { count, corner, ... }`
 ///
-/// A corner equal to the first one of its ring closes the ring; the next corner begins another ring, which cuts a hole (or fills
+/// A corner at the first one of its ring closes the ring; the next corner begins another ring, which cuts a hole (or fills
 /// one).
 pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
@@ -25,7 +28,7 @@ pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
             let corner = p.vector3()?;
             read += 1.0;
             match rings.last_mut().filter(|_| open) {
-                Some(ring) if ring.first() == Some(&corner) => open = false,
+                Some(ring) if is_closed_by(ring, corner) => open = false,
                 Some(ring) => ring.push(corner),
                 None => {
                     rings.push(vec![corner]);
@@ -46,4 +49,10 @@ pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
         let holes: Vec<_> = rings.collect();
         Ok(Polygon::try_with_holes(&outer, &holes))
     })
+}
+
+/// Whether a corner closes a ring.
+fn is_closed_by(ring: &[DVec3], corner: DVec3) -> bool {
+    ring.first()
+        .is_some_and(|first| (*first - corner).abs().max_element() <= CLOSED)
 }
