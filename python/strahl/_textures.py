@@ -123,6 +123,14 @@ class Normal(Movable):
         """The mean of normals, with weights that are 1 unless given."""
         return cls._of(_strahl.Normal.average([(weight, _checked(each, Normal)._core) for weight, each in _weighted(members, weights)]))
 
+    @classmethod
+    def facets(cls, size: float = 0.1, *, tilt: float = 0.0) -> Normal:
+        """Flat pieces, as of cut glass: the normal becomes the nearest of many directions, about ``size`` apart (1 is the length of a normal).
+
+        With a ``tilt`` (``coords``) the pieces are the cells of a crackle in this size, also on flat surfaces, each tilted by that much.
+        """
+        return cls._of(_strahl.Normal.facets(positive(size, "size"), number(tilt, "tilt")))
+
     def uv_mapped(self) -> Normal:
         """By the texture coordinates of surfaces."""
         return self._of(self._core.uv_mapped())

@@ -135,6 +135,8 @@ LOOKS: dict[str, Material | Texture | Pigment] = {
     "pigment { rgb 0.7 } normal { ripples 0.8 frequency 4 }": Texture(0.7, normal=Normal(Pattern.ripples().frequency(4), 0.8)),
     "pigment { rgb 0.7 } normal { waves 0.8 frequency 4 }": Texture(0.7, normal=Normal(Pattern.waves().frequency(4), 0.8)),
     "pigment { rgb 0.7 } normal { quilted 0.8 control0 0.2 control1 0.9 scale 0.3 }": Texture(0.7, normal=Normal(Pattern.quilted(0.2, 0.9).scale(0.3), 0.8)),
+    "pigment { rgb 0.7 } normal { facets size 0.3 rotate 20*y }": Texture(0.7, normal=Normal.facets(0.3).rotate((0, 1, 0), 20)),
+    "pigment { rgb 0.7 } normal { facets coords 0.5 size 0.2 scale 2 }": Texture(0.7, normal=Normal.facets(0.2, tilt=0.5).scale(2)),
     "pigment { rgb 0.7 } normal { granite 0.4 accuracy 0.05 }": Texture(0.7, normal=Normal("granite", 0.4, accuracy=0.05)),
     "pigment { rgb 0.7 } normal { gradient y 0.5 slope_map { [0 <0, 1>] [0.5 <1, 0>] [1 <0, -1>] } scale 0.4 }": Texture(
         0.7, normal=Normal(Pattern.gradient((0, 1, 0)), 0.5, slopes={0: (0, 1), 0.5: (1, 0), 1: (0, -1)}).scale(0.4)
@@ -549,7 +551,8 @@ SAME: dict[tuple[str, str], dict[str, Any]] = {
         "UvMapped": Pigment.uv_mapped, "Quick": Pigment.quick,
     },
     ("crates/strahl-shade/src/normal.rs", "pub enum NormalKind {\n"): {
-        name: Normal for name in ("Bumps", "Dents", "Wrinkles", "Ripples", "Waves", "Quilted", "Height", "BumpMap", "Map", "Blocks", "Average")
+        "Facets": Normal.facets,
+        **{name: Normal for name in ("Bumps", "Dents", "Wrinkles", "Ripples", "Waves", "Quilted", "Height", "BumpMap", "Map", "Blocks", "Average")},
     },
     ("crates/strahl-shade/src/patterns/mod.rs", "pub enum Pattern {\n"): {
         **{name: Pattern for name in (

@@ -70,4 +70,5 @@ groups! {
     a_pattern_takes_over_what_modified_the_colour,
     spirals_have_a_whole_number_of_arms,
     black_holes_are_not_repeated_along_axes_with_negative_numbers,
+    facets_are_cells_of_places_or_of_directions,
 }

@@ -75,6 +75,7 @@ impl NormalKind {
             | Self::Ripples(_)
             | Self::Waves(_)
             | Self::Quilted(_)
+            | Self::Facets(_)
             | Self::BumpMap(_) => false,
         }
     }

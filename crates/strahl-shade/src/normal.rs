@@ -10,7 +10,9 @@ use strahl_math::noise::{dnoise, noise};
 
 use crate::SharedList;
 use crate::image_map::ImageMap;
-use crate::patterns::{Batch, Modifiers, Pattern, PatternField, TexturePoint, Warp, water};
+use crate::patterns::{
+    Batch, Modifiers, Pattern, PatternField, TexturePoint, Warp, nearest_point, water,
+};
 use crate::pigment::{Blend, BlendMap};
 
 /// A map from pattern values to heights: value, height and slope, by cubic Hermite interpolation.
@@ -31,6 +33,41 @@ impl SlopeMap {
     }
 }
 
+/// The pieces of a surface that looks cut (`facets`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets {
+    /// Their size: 0.1 by default. There are none at 0 and below.
+    pub size: f64,
+    /// How much each of them is tilted (`coords`): they are the cells of `crackle` in this size then, tilted by this times the part of the
+    /// vector noise at the cell's point that lies in the surface. If it is 0, the normal is the direction of the point of `crackle` that is
+    /// nearest to the normal divided by the size: a flat surface is one piece.
+    pub tilt: f64,
+}
+
+impl Default for Facets {
+    fn default() -> Self {
+        Self {
+            size: 0.1,
+            tilt: 0.0,
+        }
+    }
+}
+
+impl Facets {
+    /// The tilted normal at a point of the pattern's space; `n` is the unit normal there.
+    fn tilted(self, p: DVec3, n: DVec3) -> DVec3 {
+        let Self { size, tilt } = self;
+        if !(size > 0.0) {
+            n
+        } else if tilt == 0.0 {
+            nearest_point(n / size)
+        } else {
+            let noise = dnoise(nearest_point(p / size));
+            n + (noise - n * noise.dot(n)) * tilt
+        }
+    }
+}
+
 /// How a normal is perturbed.
 #[derive(Clone, Debug)]
 pub enum NormalKind {
@@ -46,6 +83,8 @@ pub enum NormalKind {
     Waves(u32),
     /// Outwards on cushions (`quilted`) with these controls.
     Quilted([f64; 2]),
+    /// To the same side on each of many pieces (`facets`); the amount does not count.
+    Facets(Facets),
     /// Against the gradient of a pattern's value, taken as a height, possibly by way of a slope map.
     Height(Pattern, Option<SlopeMap>),
     /// Against the slope of a picture's grey value, taken as a relief (`bump_map`).
@@ -146,6 +185,7 @@ impl PovNormal {
             NormalKind::Quilted(controls) => {
                 n + crate::patterns::quilted_tilt(moved(), *controls) * self.amount
             }
+            NormalKind::Facets(facets) => facets.tilted(moved(), n.normalize_or_zero()),
             NormalKind::Height(pattern, slopes) => {
                 let field = self.field(pattern);
                 // The tetrahedron surrounds the displaced point; its corners are not displaced again.

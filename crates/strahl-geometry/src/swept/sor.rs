@@ -9,8 +9,9 @@ use strahl_math::DVec2;
 /// neighbours; the first and the last point only serve for that. Where the square is negative there is no surface.
 ///
 /// The discs at both ends of an *open* one are invisible, but it is still a solid. Texture coordinates: `u` is the angle about
-/// the axis, `v` grows along the curve, each of its pieces taking an equal share. On the lower disc `v` grows from 0 at the axis to 1 at
-/// the rim, on the upper one from 0 at the rim to 1 at the axis. Facets: one for every part on which the radius is monotone, from the disc at the lower end to that at the upper end.
+/// the axis, `v` grows along the curve from 0 to 1, each of its pieces taking an equal share, and along a radius of each disc by 1: from -1 at
+/// the axis to 0 at the rim of the lower one, and from 1 to 2 on the upper one. Facets: one for every part on which the radius is
+/// monotone, from the disc at the lower end to that at the upper end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sor {
     pub(super) meridian: Meridian,
@@ -42,7 +43,7 @@ impl Sor {
             };
             if i == 0 {
                 let (middle, rim) = disc(a);
-                builder.piece(&Piece::Line([middle, rim]), !open, [0.0, 1.0]);
+                builder.piece(&Piece::Line([middle, rim]), !open, [-1.0, 0.0]);
             }
             let (step, third) = (b.y - a.y, 1.0 / 3.0);
             // The slope of the square is twice the radius times that of the radius.
@@ -59,7 +60,7 @@ impl Sor {
             builder.squared_piece(square, heights, [share(i), share(i + 1)]);
             if i + 1 == count {
                 let (middle, rim) = disc(b);
-                builder.piece(&Piece::Line([rim, middle]), !open, [0.0, 1.0]);
+                builder.piece(&Piece::Line([rim, middle]), !open, [1.0, 2.0]);
             }
         }
         let sor = Self {

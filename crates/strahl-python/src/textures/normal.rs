@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use strahl::prelude::PovNormal;
 use strahl::shade::SharedList;
-use strahl::shade::normal::{NormalKind, SlopeMap};
+use strahl::shade::normal::{Facets, NormalKind, SlopeMap};
 use strahl::shade::patterns::Pattern as Kind;
 use strahl::shade::pigment::BlendMap;
 
@@ -84,6 +84,12 @@ impl Normal {
     #[staticmethod]
     fn average(entries: Vec<(f64, Py<Self>)>) -> Self {
         Self(PovNormal::new(NormalKind::Average(members(&entries))))
+    }
+
+    /// Flat pieces of this size; if they are tilted, they are cells of a crackle, also on flat surfaces.
+    #[staticmethod]
+    fn facets(size: f64, tilt: f64) -> Self {
+        Self(PovNormal::new(NormalKind::Facets(Facets { size, tilt })))
     }
 
     /// By the texture coordinates of surfaces.

@@ -8,7 +8,6 @@ use strahl_sdl::MemoryHost;
 fn what_is_not_supported_is_named() {
     for (items, word) in [
         ("pigment { facets }", "facets"),
-        ("normal { facets size 0.1 }", "facets"),
         ("pigment { tiling 25 }", "tiling 25"),
         ("interior { media { emission 1 } ior 1.5 }", "media"),
         ("pigment { checker warp { cubic } }", "cubic"),

@@ -123,6 +123,15 @@ impl Default for Crackle {
     }
 }
 
+/// The random point that is nearest to `p`.
+pub(crate) fn nearest_point(p: DVec3) -> DVec3 {
+    let crackle = Crackle {
+        solid: true,
+        ..Crackle::default()
+    };
+    crackle.search(CrackleMetric::Euclidean, p).center
+}
+
 /// The 5³ cubes around a cube, except those that are two cubes away in more than one direction. First the inner 3³, then the others; both
 /// by their distances from a point in the lower half of the cube along each axis.
 const NEIGHBOURS: [[i64; 3]; 81] = {

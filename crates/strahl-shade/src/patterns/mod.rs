@@ -27,6 +27,7 @@ use strahl_math::{DVec2, DVec3};
 
 pub use batch::BATCH;
 pub(crate) use batch::Batch;
+pub(crate) use crackle::nearest_point;
 pub use crackle::{Crackle, CrackleMetric};
 pub use density::{DensityCodes, DensityGrid, DensityInterpolation};
 pub use fractal::{Exterior, Fractal, FractalKind, Interior as FractalInterior};

@@ -8,7 +8,7 @@ use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use strahl_math::Transform;
 use strahl_shade::SharedList;
-use strahl_shade::normal::{NormalKind, PovNormal, SlopeMap};
+use strahl_shade::normal::{Facets, NormalKind, PovNormal, SlopeMap};
 use strahl_shade::patterns::Pattern;
 use strahl_shade::pigment::BlendMap;
 
@@ -285,8 +285,18 @@ impl Parser<'_> {
                 return self.normal_amount(draft);
             }
             Some(Word::UvMapping) => return Err(self.late_uv_mapping(token, "normal")),
-            Some(Word::Facets) => return self.skip_facets(token),
+            Some(Word::Facets) => {
+                self.take(token)?;
+                draft.chooser = Chooser::Fixed(NormalKind::Facets(Facets::default()));
+                draft.choice = Choice::Own;
+                return self.normal_amount(draft);
+            }
             _ => {}
+        }
+        if let Chooser::Fixed(NormalKind::Facets(facets)) = &mut draft.chooser
+            && self.facets_item(facets, token)?
+        {
+            return Ok(());
         }
         if let Some(pattern) = self.pattern(token)? {
             draft.special = token.is(Word::Bumps);
@@ -345,20 +355,15 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `facets size 0.5` or `facets coords 2`: the pattern is not supported.
-    fn skip_facets(&mut self, token: Token) -> PResult<()> {
+    /// `coords 1` or `size 0.2` of `facets`.
+    fn facets_item(&mut self, facets: &mut Facets, token: Token) -> PResult<bool> {
+        let number = match token.word() {
+            Some(Word::Coords) => &mut facets.tilt,
+            Some(Word::Size) => &mut facets.size,
+            _ => return Ok(false),
+        };
         self.take(token)?;
-        let place = self.place();
-        self.warn_hint(
-            place,
-            "`facets` is not supported yet and is left out",
-            "the surface will be smooth instead of faceted",
-        );
-        let kind = self.peek()?;
-        if kind.is(Word::Size) || kind.is(Word::Coords) {
-            self.take(kind)?;
-            self.float()?;
-        }
-        Ok(())
+        *number = self.float()?;
+        Ok(true)
     }
 }

@@ -53,6 +53,7 @@ pub(super) fn of_normal(normal: &PovNormal) -> Weight {
         | NormalKind::Ripples(_)
         | NormalKind::Waves(_)
         | NormalKind::Quilted(_)
+        | NormalKind::Facets(_)
         | NormalKind::Height(..)
         | NormalKind::BumpMap(_) => Weight::ONE,
     }
