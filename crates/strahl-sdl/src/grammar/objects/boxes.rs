@@ -1,4 +1,3 @@
-use super::Shared;
 use crate::grammar::Entity;
 use crate::parser::{PResult, Parser};
 use strahl_geometry::{Cuboid, GeometryError, Shape};
@@ -65,9 +64,7 @@ impl Parser<'_> {
         if mirrored == [false; 3] {
             return Ok(());
         }
-        if uses_coordinates(object, &self.state.shared) {
-            self.expand_instances(object)?;
-        }
+        self.expand_mapped_boxes(object)?;
         let mut waiting = vec![object];
         while let Some(object) = waiting.pop() {
             let linear = object.transform.as_ref().map(|map| map.linear());
@@ -84,20 +81,4 @@ impl Parser<'_> {
         }
         Ok(())
     }
-}
-
-/// Whether something of an object has a texture on texture coordinates.
-fn uses_coordinates(object: &Object, shared: &Shared) -> bool {
-    let mut waiting = vec![object];
-    while let Some(object) = waiting.pop() {
-        if object.uv_mapped || object.material.as_ref().is_some_and(|m| m.uses_uv()) {
-            return true;
-        }
-        match &object.kind {
-            ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
-            ObjectKind::Instance(id) => waiting.extend(shared.kind_of(*id)),
-            ObjectKind::Shape(_) | ObjectKind::Light(_) => {}
-        }
-    }
-    false
 }

@@ -55,6 +55,10 @@ pub(crate) struct Tally {
     lights: bool,
     /// Whether a part is a smooth height field, whose normals depend on the scale of each use. Copies share the heights.
     smooth_fields: bool,
+    /// Whether a part is a box.
+    boxes: bool,
+    /// Whether a part has a texture on texture coordinates.
+    mapped: bool,
     /// The number of shapes and operations, including those of the declared objects in it.
     pub(in crate::grammar) expanded: u64,
 }
@@ -71,6 +75,8 @@ impl Tally {
             }
             tally.parts += 1;
             tally.expanded = tally.expanded.saturating_add(1);
+            tally.mapped |=
+                object.uv_mapped || object.material.as_ref().is_some_and(|m| m.uses_uv());
             match &object.kind {
                 ObjectKind::Csg { op, children } => {
                     // A light group determines which lights illuminate its parts, even if it has no lights.
@@ -82,12 +88,15 @@ impl Tally {
                     tally.smooth_fields |=
                         matches!(shape, Shape::HeightField(field) if field.is_smooth());
                     tally.inherits |= !has_material;
+                    tally.boxes |= matches!(shape, Shape::Cuboid(_));
                 }
                 ObjectKind::Instance(id) => {
                     // Its parts may inherit the material; checking them would not be worth the time.
                     tally.inherits |= !has_material;
                     let inside = shared.objects.get(id.0 as usize);
                     tally.unfilled |= inside.is_some_and(|d| d.tally.unfilled);
+                    tally.boxes |= inside.is_some_and(|d| d.tally.boxes);
+                    tally.mapped |= inside.is_some_and(|d| d.tally.mapped);
                     let parts = inside.map_or(0, |declared| declared.tally.expanded);
                     tally.expanded = tally.expanded.saturating_add(parts);
                 }
@@ -177,6 +186,31 @@ impl Parser<'_> {
             self.count_objects(Tally::of(object, &self.state.shared).expanded)?;
             *object = expanded(object, &self.state.shared);
         }
+        Ok(())
+    }
+
+    /// The same for an object that is mirrored, if boxes in it may have textures on texture coordinates, unless it has too many parts.
+    ///
+    /// # Errors
+    /// If the scene has too many parts.
+    pub(super) fn expand_mapped_boxes(&mut self, object: &mut Object) -> PResult<()> {
+        let Tally {
+            boxes,
+            mapped,
+            expanded,
+            ..
+        } = Tally::of(object, &self.state.shared);
+        if !(boxes && mapped && has_instances(object)) {
+            return Ok(());
+        }
+        if expanded <= MOST_COPIED {
+            return self.expand_instances(object);
+        }
+        let place = self.place();
+        self.warn(
+            place,
+            "the textures of boxes in this object are mirrored with it, as they are not in POV-Ray: it has too many parts",
+        );
         Ok(())
     }
 
