@@ -47,7 +47,7 @@ impl Unfolded {
 }
 
 /// How the faces of a box are unfolded to texture coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unfolding {
     /// The axes along which the box is mirrored first.
     mirrored: [bool; 3],

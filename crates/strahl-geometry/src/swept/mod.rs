@@ -26,6 +26,6 @@ pub use curve::Spline;
 pub use glyph::Glyph;
 pub use lathe::Lathe;
 pub use outline::{Outline, OutlineBuilder};
-pub use prism::{Prism, PrismSweep};
+pub use prism::{CLOSING_DISTANCE, Prism, PrismSweep};
 pub use sor::Sor;
 pub use sphere_sweep::{SphereSweep, SweepSpline};

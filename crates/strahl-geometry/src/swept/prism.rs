@@ -7,8 +7,8 @@ use crate::{
 };
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
-/// A point as near as this to the first one of its curve closes the curve, as in POV-Ray (measured).
-const CLOSED: f64 = 1e-10;
+/// A point as near as this to the first one of a prism's curve or a polygon's ring, along each axis, closes it, as in POV-Ray (measured).
+pub const CLOSING_DISTANCE: f64 = 1e-10;
 
 /// How the outline of a [`Prism`] changes with the height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub struct Prism {
 impl Prism {
     /// A prism between two heights, in either order, over the curves that the points (x and z) describe.
     ///
-    /// A curve ends where its first point is repeated (or missed by no more than 10⁻¹⁰, as by programs that compute it), and the next point begins another one. Splines that need points beside
+    /// A curve ends where its first point is repeated ([`CLOSING_DISTANCE`] says how exactly), and the next point begins another one. Splines that need points beside
     /// the curve have them before the first and (cubic ones) behind the last point of each curve; of a Bézier curve every fourth
     /// point may be the last. A curve that does not come back is closed by a line ([`Outline::gaps`] tells).
     ///
@@ -118,7 +118,7 @@ fn curve_end(spline: Spline, points: &[DVec2]) -> Option<usize> {
     let first = *points.get(before)?;
     // The last point of a Bézier piece is the fourth of four.
     let mut ends = (before + step.max(2) - 1..points.len()).step_by(step);
-    ends.find(|&i| (points[i] - first).abs().max_element() <= CLOSED)
+    ends.find(|&i| (points[i] - first).abs().max_element() <= CLOSING_DISTANCE)
 }
 
 /// From the space of prisms, whose axis is y, to that of extrusions, whose axis is z, and back.

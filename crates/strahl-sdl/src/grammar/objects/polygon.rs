@@ -1,10 +1,7 @@
 use crate::grammar::Entity;
 use crate::parser::{PResult, Parser};
-use strahl_geometry::Polygon;
+use strahl_geometry::{CLOSING_DISTANCE, Polygon};
 use strahl_math::DVec3;
-
-/// A corner as near as this to the first one of its ring closes the ring, as in POV-Ray (measured).
-const CLOSED: f64 = 1e-10;
 
 /// `polygon { count, corner, ... }`
 ///
@@ -54,5 +51,5 @@ pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
 /// Whether a corner closes a ring.
 fn is_closed_by(ring: &[DVec3], corner: DVec3) -> bool {
     ring.first()
-        .is_some_and(|first| (*first - corner).abs().max_element() <= CLOSED)
+        .is_some_and(|first| (*first - corner).abs().max_element() <= CLOSING_DISTANCE)
 }
