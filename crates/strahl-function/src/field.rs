@@ -1,6 +1,7 @@
 use crate::bounds::Bounds;
 use crate::cost::Cost;
 use crate::limits;
+use crate::rate::Rate;
 use std::fmt::Debug;
 
 /// A real function that expressions can call without knowing its formula: a pattern, one channel of a pigment, a spline, noise.
@@ -42,15 +43,15 @@ pub trait ScalarField: Debug + Send + Sync {
         Bounds::UNKNOWN
     }
 
-    /// Whether [`rate`](Self::rate) can be known.
-    fn has_rates(&self) -> bool {
-        false
+    /// Whether [`rate`](Self::rate) can be known, and of which arguments.
+    fn rates(&self) -> Rates {
+        Rates::Unknown
     }
 
-    /// The [`bounds`](Self::bounds), and bounds of the derivative along a line on which the arguments, within bounds, change at rates within
-    /// bounds; [`Bounds::UNKNOWN`] where the value may jump or be no number.
-    fn rate(&self, arguments: &[Bounds], _rates: &[Bounds]) -> (Bounds, Bounds) {
-        (self.bounds(arguments), Bounds::UNKNOWN)
+    /// Bounds of the value, and of the derivative along a line on which the arguments change as told; [`Bounds::UNKNOWN`] where the value may
+    /// jump or be no number.
+    fn rate(&self, arguments: &[Rate]) -> (Bounds, Bounds) {
+        (values_within(self, arguments), Bounds::UNKNOWN)
     }
 
     /// The value, which must have the bits of [`value`](Self::value), and its partial derivatives by the first arguments, as many as
@@ -60,6 +61,26 @@ pub trait ScalarField: Debug + Send + Sync {
     fn gradient(&self, arguments: &[f64], partials: &mut [f64]) -> f64 {
         central_differences(self, arguments, partials)
     }
+}
+
+/// Of which arguments a rate of change can be known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rates {
+    /// Of none.
+    Unknown,
+    /// Of those that go along a straight line.
+    OfSegments,
+    /// Of all those whose own rates are known.
+    OfBoxes,
+}
+
+/// [`ScalarField::bounds`] for arguments that change along a line.
+pub(crate) fn values_within(field: &(impl ScalarField + ?Sized), arguments: &[Rate]) -> Bounds {
+    let mut values = [Bounds::UNKNOWN; limits::PARAMETERS];
+    for (value, argument) in values.iter_mut().zip(arguments) {
+        *value = argument.value;
+    }
+    field.bounds(&values[..arguments.len().min(limits::PARAMETERS)])
 }
 
 /// [`ScalarField::store_values`] one by one.

@@ -3,7 +3,7 @@ use crate::compile::compile;
 use crate::cost::Cost;
 use crate::domain::{Domain, Dual, LANES, Lanes};
 use crate::error::FunctionError;
-use crate::field::{ScalarField, store_one_by_one};
+use crate::field::{Rates, ScalarField, store_one_by_one};
 use crate::graph::{Expr, Graph};
 use crate::limits;
 use crate::rate::Rate;
@@ -223,14 +223,45 @@ impl Function {
         arguments: &[Bounds],
         rates: &[f64],
     ) -> (Bounds, Bounds) {
+        self.rate_of(workspace, |i| {
+            let argument = arguments.get(i).copied().unwrap_or(Bounds::NAN);
+            Rate {
+                value: Bounds::argument(argument.min, argument.max).with_nan(argument.nan),
+                rate: Bounds::point(rates.get(i).copied().unwrap_or(f64::NAN)),
+                middle: f64::NAN,
+            }
+        })
+    }
+
+    /// The same on a segment, from the arguments at one end to those at the other. Some fields have narrower bounds there than in the box
+    /// around it.
+    pub fn rate_along(
+        &self,
+        workspace: &mut Workspace,
+        [from, to]: [&[f64]; 2],
+        rates: &[f64],
+    ) -> (Bounds, Bounds) {
+        self.rate_of(workspace, |i| {
+            let at = |numbers: &[f64]| numbers.get(i).copied().unwrap_or(f64::NAN);
+            let (a, b) = (at(from), at(to));
+            Rate {
+                value: Bounds::argument(if a < b { a } else { b }, if a < b { b } else { a }),
+                rate: Bounds::point(at(rates)),
+                middle: 0.5 * (a + b),
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn rate_of(
+        &self,
+        workspace: &mut Workspace,
+        argument: impl Fn(usize) -> Rate,
+    ) -> (Bounds, Bounds) {
         let tape = &*self.tape;
         let stack = workspace.rates.of(tape);
         for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
-            let argument = arguments.get(i).copied().unwrap_or(Bounds::NAN);
-            *register = Rate {
-                value: Bounds::argument(argument.min, argument.max).with_nan(argument.nan),
-                rate: Bounds::point(rates.get(i).copied().unwrap_or(f64::NAN)),
-            };
+            *register = argument(i);
         }
         let result = run(tape, stack, &mut self.fuel());
         let rate = if result.value.nan {
@@ -241,9 +272,9 @@ impl Function {
         (result.value, rate)
     }
 
-    /// Whether [`rate`](Self::rate) can be known: those of all fields that are called can be.
-    pub fn has_rates(&self) -> bool {
-        self.tape.has_rates()
+    /// On what [`rate`](Self::rate) can be known: on what those of all fields that are called can be.
+    pub fn rates(&self) -> Rates {
+        self.tape.rates()
     }
 
     /// Whether [`bounds`](Self::bounds) converge to the values as boxes become small: all fields within have bounds.

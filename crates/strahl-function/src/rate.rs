@@ -5,34 +5,51 @@
 
 use crate::bounds::Bounds;
 use crate::domain::{Domain, Round};
-use crate::field::ScalarField;
-use crate::limits;
+use crate::field::{ScalarField, values_within};
 use crate::op::{BinaryOp, UnaryOp};
 
 /// Bounds of a value on a part of a line, and of its derivative along it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rate {
-    pub(crate) value: Bounds,
-    pub(crate) rate: Bounds,
+pub struct Rate {
+    /// Bounds of the value.
+    pub value: Bounds,
+    /// Bounds of the derivative.
+    pub rate: Bounds,
+    /// The value in the middle of the part, if it is known to change linearly; else NaN.
+    pub middle: f64,
 }
 
 const ZERO: Bounds = Bounds::new(0.0, 0.0);
 const ONE: Bounds = Bounds::new(1.0, 1.0);
 
 impl Rate {
-    /// A value with its rate, which counts only if the value is certainly finite.
+    /// A value that need not change linearly, with its rate, which counts only if the value is certainly finite.
     pub(crate) fn new(value: Bounds, rate: Bounds) -> Self {
         let is_finite = value.min > f64::NEG_INFINITY && value.max < f64::INFINITY;
         let is_known = is_finite && !value.nan && !rate.nan && !rate.is_empty();
         Self {
             value,
             rate: if is_known { rate } else { Bounds::UNKNOWN },
+            middle: f64::NAN,
         }
     }
 
+    /// The same, with a value in the middle.
+    fn with_middle(self, middle: f64) -> Self {
+        Self { middle, ..self }
+    }
+
     /// A value that does not change along the line.
-    pub(crate) const fn constant_within(value: Bounds) -> Self {
-        Self { value, rate: ZERO }
+    pub(crate) fn constant_within(value: Bounds) -> Self {
+        Self {
+            value,
+            rate: ZERO,
+            middle: if value.min == value.max {
+                value.min
+            } else {
+                f64::NAN
+            },
+        }
     }
 
     /// Whether the value does not change along the line.
@@ -47,7 +64,11 @@ impl Rate {
         } else {
             Bounds::UNKNOWN
         };
-        Self { value, rate }
+        Self {
+            value,
+            rate,
+            middle: f64::NAN,
+        }
     }
 }
 
@@ -134,24 +155,22 @@ fn rate(op: BinaryOp, a: Rate, b: Rate, value: Bounds) -> Bounds {
     }
 }
 
+/// What an operation makes of two values in the middle, if it makes linear changes linear.
+#[inline(always)]
+fn middle(op: BinaryOp, a: Rate, b: Rate) -> f64 {
+    let is_number = |x: Rate| x.value.min == x.value.max;
+    match op {
+        BinaryOp::Add => a.middle + b.middle,
+        BinaryOp::Sub => a.middle - b.middle,
+        BinaryOp::Mul if is_number(a) || is_number(b) => a.middle * b.middle,
+        BinaryOp::Div if is_number(b) => a.middle / b.middle,
+        _ => f64::NAN,
+    }
+}
+
 /// A rate times a factor, which does not matter if the rate is zero.
 fn scaled(rate: Bounds, factor: Bounds) -> Bounds {
     if rate == ZERO { ZERO } else { rate.mul(factor) }
-}
-
-/// [`Domain::field`] for up to so many arguments.
-fn field_of<const MOST: usize>(field: &dyn ScalarField, arguments: &[Rate]) -> Rate {
-    let mut values = [Bounds::UNKNOWN; MOST];
-    let mut rates = [Bounds::UNKNOWN; MOST];
-    for ((value, rate), argument) in values.iter_mut().zip(&mut rates).zip(arguments) {
-        (*value, *rate) = (argument.value, argument.rate);
-    }
-    let count = arguments.len().min(MOST);
-    if arguments.iter().all(Rate::is_constant) {
-        return Rate::constant_within(field.bounds(&values[..count]));
-    }
-    let (value, rate) = field.rate(&values[..count], &rates[..count]);
-    Rate::new(value, rate)
 }
 
 impl Domain for Rate {
@@ -168,6 +187,7 @@ impl Domain for Rate {
         Self {
             value: Bounds::UNKNOWN,
             rate: Bounds::UNKNOWN,
+            middle: f64::NAN,
         }
     }
     #[inline(always)]
@@ -185,6 +205,9 @@ impl Domain for Rate {
             return Self::constant_within(value);
         }
         match slope(op, a.value, value) {
+            Some(slope) if op == UnaryOp::Neg => {
+                Self::new(value, a.rate.mul(slope)).with_middle(-a.middle)
+            }
             Some(slope) => Self::new(value, a.rate.mul(slope)),
             None => Self::step(value),
         }
@@ -195,7 +218,7 @@ impl Domain for Rate {
         if a.is_constant() && b.is_constant() {
             return Self::constant_within(value);
         }
-        Self::new(value, rate(op, a, b, value))
+        Self::new(value, rate(op, a, b, value)).with_middle(middle(op, a, b))
     }
     fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self {
         let Bounds { min, max, nan } = selector.value;
@@ -214,14 +237,15 @@ impl Domain for Rate {
             } else {
                 Bounds::UNKNOWN
             },
+            middle: f64::NAN,
         }
     }
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
-        if arguments.len() <= limits::FEW {
-            field_of::<{ limits::FEW }>(field, arguments)
-        } else {
-            field_of::<{ limits::PARAMETERS }>(field, arguments)
+        if arguments.iter().all(Self::is_constant) {
+            return Self::constant_within(values_within(field, arguments));
         }
+        let (value, rate) = field.rate(arguments);
+        Self::new(value, rate)
     }
     fn round(counter: Self, to: Self, fuel: &mut u64, price: u64) -> Round<()> {
         <Bounds as Domain>::round(counter.value, to.value, fuel, price)

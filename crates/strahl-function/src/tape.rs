@@ -1,6 +1,6 @@
 //! Tapes: functions as lists of instructions over registers.
 
-use crate::field::ScalarField;
+use crate::field::{Rates, ScalarField};
 use crate::op::{BinaryOp, UnaryOp};
 use std::fmt;
 use std::sync::Arc;
@@ -148,11 +148,16 @@ impl Tape {
             && self.calls.iter().all(|(f, _)| f.gains_together())
     }
 
-    /// Whether the rates of change of all fields it reads can be known.
-    pub(crate) fn has_rates(&self) -> bool {
-        self.fields.iter().all(|f| f.field.has_rates())
-            && self.calls.iter().all(|(callee, _)| callee.has_rates())
-            && self.loops.iter().all(|l| l.body.has_rates())
+    /// Of which arguments the rates of change of all fields it reads can be known.
+    pub(crate) fn rates(&self) -> Rates {
+        let fields = self.fields.iter().map(|f| f.field.rates());
+        let calls = self.calls.iter().map(|(callee, _)| callee.rates());
+        let loops = self.loops.iter().map(|l| l.body.rates());
+        fields
+            .chain(calls)
+            .chain(loops)
+            .min()
+            .unwrap_or(Rates::OfBoxes)
     }
 }
 

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that unwraps fails as it should")]
 
 use proptest::prelude::*;
-use strahl_function::{BinaryOp, Bounds, Expr, Function, Graph, UnaryOp, Workspace};
+use strahl_function::{BinaryOp, Bounds, Expr, Function, Graph, Rates, UnaryOp, Workspace};
 
 const UNARY: [UnaryOp; 25] = [
     UnaryOp::Neg,
@@ -247,7 +247,7 @@ fn rates_tell_where_a_function_is_monotone() {
         let xyz = g.xyz();
         let root = build(&mut g, xyz);
         let f = g.finish(root).unwrap();
-        assert!(f.has_rates());
+        assert_eq!(f.rates(), Rates::OfBoxes);
         let still = Bounds::point(0.5);
         let region = [Bounds::new(from, to), still, still];
         f.rate(&mut Workspace::new(), &region, &[1.0, 0.0, 0.0]).1

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that unwraps fails as it should")]
 
 use std::collections::BTreeMap;
-use strahl_function::{Bounds, Function, FunctionError, Graph, ScalarField, Workspace, internal};
+use strahl_function::{
+    Bounds, Expr, Function, FunctionError, Graph, Rates, ScalarField, Workspace, internal,
+};
 use strahl_math::noise::NoiseGenerator;
 
 /// A function of the point with fixed parameters.
@@ -222,7 +224,7 @@ fn no_name_is_given_twice() {
 }
 
 #[test]
-fn rates_of_noise_bound_its_changes_and_sums_of_octaves_have_none() {
+fn rates_of_noise_bound_its_changes_and_are_narrower_along_segments() {
     let mut ws = Workspace::new();
     let mut seed = 7_u64;
     let mut random = || {
@@ -238,7 +240,7 @@ fn rates_of_noise_bound_its_changes_and_sums_of_octaves_have_none() {
         ("f_noise_generator", &[3.0]),
     ] {
         let f = at(name, parameters).unwrap();
-        assert!(f.has_rates(), "{name}");
+        assert_eq!(f.rates(), Rates::OfBoxes, "{name}");
         for _ in 0..300 {
             let start = [0; 3].map(|_| 20.0 * random());
             let way = [0; 3].map(|_| random());
@@ -259,6 +261,44 @@ fn rates_of_noise_bound_its_changes_and_sums_of_octaves_have_none() {
         }
     }
     assert!(monotone > 300, "{monotone}");
-    let sum = at("f_ridged_mf", &[0.9, 2.1, 7.0, 0.8, 2.0, 2.0]).unwrap();
-    assert!(!sum.has_rates());
+    let sum = at("f_ridged_mf", &[0.9, 2.1, 3.0, 0.8, 2.0, 2.0]).unwrap();
+    assert_eq!(sum.rates(), Rates::OfSegments);
+    let [from, to] = [[0.31, 0.22, -0.4], [0.32, 0.21, -0.42]];
+    let way = [0.01, -0.01, -0.02];
+    let along = sum.rate_along(&mut ws, [&from, &to], &way);
+    let region = [0, 1, 2].map(|i| Bounds::new(from[i].min(to[i]), from[i].max(to[i])));
+    let (values, rate) = sum.rate(&mut ws, &region, &way);
+    assert!(rate.nan && !along.1.nan);
+    assert!(2.0 * (along.0.max - along.0.min) < values.max - values.min);
+}
+
+#[test]
+fn segments_stay_segments_in_linear_functions_only() {
+    let narrowness = |build: &dyn Fn(&mut Graph, [Expr; 3]) -> [Expr; 3]| {
+        let mut g = Graph::new(["x", "y", "z"]);
+        let xyz = g.xyz();
+        let arguments = build(&mut g, xyz);
+        let root = g.internal("f_noise3d", &arguments, NoiseGenerator::default());
+        let f = g.finish(root).unwrap();
+        let mut ws = Workspace::new();
+        let (from, way) = ([0.1, 0.25, -0.3], [0.02, 0.01, -0.015]);
+        let at = |s: f64| [0, 1, 2].map(|i| from[i] + s * way[i]);
+        let to = at(1.0);
+        let (values, rate) = f.rate_along(&mut ws, [&from, &to], &way);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for i in 0..=100 {
+            let value = f.value(&mut ws, &at(f64::from(i) / 100.0));
+            assert!(values.contains(value));
+            (low, high) = (low.min(value), high.max(value));
+        }
+        assert!(rate.min <= high - low && rate.max >= low - high);
+        (values.max - values.min) / (high - low)
+    };
+    let linear = narrowness(&|g, [x, y, z]| {
+        let (a, b) = (g.scaled(x, 2.5), g.sub(y, z));
+        [g.add(a, y), g.offset(b, 0.3), g.neg(z)]
+    });
+    assert!(linear < 1.2, "{linear}");
+    let curved = narrowness(&|g, [x, y, z]| [g.square(x), y, z]);
+    assert!(curved > 1.5, "{curved}");
 }

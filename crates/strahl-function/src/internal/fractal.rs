@@ -4,12 +4,17 @@ use super::octaves::{Octaves, Parameters, Sum};
 use super::{Formula, Internal};
 use crate::bounds::Bounds;
 use crate::cost::Cost;
-use crate::field::{ScalarField, central_differences, step, store_one_by_one};
+use crate::field::{
+    Rates, ScalarField, central_differences, step, store_one_by_one, values_within,
+};
 use crate::graph::{Expr, Graph};
+use crate::rate::Rate;
+use crate::rounding::less;
 use std::sync::{Arc, OnceLock};
 use strahl_math::DVec3;
 use strahl_math::noise::{
-    NoiseGenerator, noise, noise_bounds, noise_of_neighbours, noise_rate, store_noise,
+    Along, LEAST_REACH, NoiseGenerator, Segment, noise, noise_along, noise_bounds,
+    noise_of_neighbours, noise_rate, store_noise,
 };
 
 pub(super) const TABLE: &[Internal] = &[
@@ -157,13 +162,9 @@ impl ScalarField for NoiseFunction {
         };
         let nan = ![x, y, z].iter().all(is_finite);
         let p = [x, y, z];
-        let mut numbers = [0.0; 6];
-        for (number, parameter) in numbers.iter_mut().zip(rest) {
-            match parameter.single() {
-                Some(known) => *number = known,
-                None => return Bounds::UNKNOWN,
-            }
-        }
+        let Some(numbers) = numbers(rest.iter()) else {
+            return Bounds::UNKNOWN;
+        };
         if let Kind::Sum(sum) = self.kind {
             return self.with(sum, &numbers, |octaves| octaves.bounds(&p));
         }
@@ -218,34 +219,107 @@ impl ScalarField for NoiseFunction {
         value
     }
 
-    /// Sums over octaves change so fast that rates hardly ever tell more than bounds of the value.
-    fn has_rates(&self) -> bool {
-        matches!(self.kind, Kind::Noise | Kind::Signed | Kind::Generator)
+    fn rates(&self) -> Rates {
+        match self.kind {
+            // In boxes they change so fast that rates hardly ever tell more than bounds of the value.
+            Kind::Sum(_) => Rates::OfSegments,
+            Kind::Noise | Kind::Signed | Kind::Generator => Rates::OfBoxes,
+        }
     }
 
-    fn rate(&self, arguments: &[Bounds], rates: &[Bounds]) -> (Bounds, Bounds) {
-        let unknown = || (self.bounds(arguments), Bounds::UNKNOWN);
-        let (&[x, y, z, ref rest @ ..], &[p, q, r, ..]) = (arguments, rates) else {
+    fn rate(&self, arguments: &[Rate]) -> (Bounds, Bounds) {
+        let unknown = || (values_within(self, arguments), Bounds::UNKNOWN);
+        let Some((point @ [x, y, z], rest)) = arguments.split_first_chunk() else {
             return unknown();
         };
+        if !point
+            .iter()
+            .all(|x| is_finite(&x.value) && is_finite(&x.rate))
+        {
+            return unknown();
+        }
+        let segment = segment(point);
         let generator = match (self.kind, rest) {
             (Kind::Noise | Kind::Signed, []) => Some(self.generator),
-            (Kind::Generator, [number]) => number.single().map(numbered),
+            (Kind::Generator, [number]) => number.value.single().map(numbered),
+            (Kind::Sum(sum), rest) => {
+                let numbers = numbers(rest.iter().map(|number| &number.value));
+                let found = segment
+                    .zip(numbers)
+                    .and_then(|((segment, speed), numbers)| {
+                        let (value, rate) =
+                            self.with(sum, &numbers, |octaves| octaves.along(segment))?;
+                        Some((value, rate.mul(Bounds::point(speed))))
+                    });
+                return found.unwrap_or_else(unknown);
+            }
             _ => None,
         };
-        let Some(generator) = generator.filter(|_| [x, y, z, p, q, r].iter().all(is_finite)) else {
+        let Some(generator) = generator else {
             return unknown();
         };
-        let min = DVec3::new(x.min, y.min, z.min);
-        let max = DVec3::new(x.max, y.max, z.max);
-        let way = [p, q, r].map(|r| (r.min, r.max));
-        let ((low, high), (fall, rise)) = noise_rate(min, max, &way, generator);
+        let mut found = None;
+        if let Some((segment, speed)) = segment {
+            let along = noise_along(segment, generator);
+            if along != Along::UNKNOWN {
+                let (fall, rise) = along.rate;
+                found = Some((along.value, (fall * speed, rise * speed)));
+            }
+        }
+        let ((low, high), (fall, rise)) = found.unwrap_or_else(|| {
+            let min = DVec3::new(x.value.min, y.value.min, z.value.min);
+            let max = DVec3::new(x.value.max, y.value.max, z.value.max);
+            let way = [x, y, z].map(|x| (x.rate.min, x.rate.max));
+            noise_rate(min, max, &way, generator)
+        });
         let (value, rate) = (Bounds::new(low, high), Bounds::new(fall, rise));
         match self.kind {
             Kind::Signed => (signed(value), rate.mul(Bounds::point(2.0))),
             _ => (value, rate),
         }
     }
+}
+
+/// The parameters of a sum, if they are known.
+fn numbers<'a>(arguments: impl Iterator<Item = &'a Bounds>) -> Option<Parameters> {
+    let mut numbers = [0.0; 6];
+    for (number, argument) in numbers.iter_mut().zip(arguments) {
+        *number = argument.single()?;
+    }
+    Some(numbers)
+}
+
+/// The segment on which a point goes, if it goes along a straight line and not too short a way, and how fast the segment's parameter changes
+/// with that of the line.
+fn segment(point: &[Rate; 3]) -> Option<(Segment, f64)> {
+    /// Linear functions have rates as narrow as rounding allows.
+    const NARROW: f64 = 1e-13;
+    let (mut middle, mut way) = ([0.0; 3], [0.0; 3]);
+    // Half of the range of the line's parameter; on each axis the point goes no further than its bounds.
+    let mut half = f64::INFINITY;
+    for (
+        axis,
+        Rate {
+            value,
+            rate,
+            middle: m,
+        },
+    ) in point.iter().enumerate()
+    {
+        (middle[axis], way[axis]) = (*m, 0.5 * (rate.min + rate.max));
+        let speed = way[axis].abs();
+        // Also refuses NaN.
+        if !(m.abs() < f64::INFINITY && rate.max - rate.min <= NARROW * speed) {
+            return None;
+        }
+        if speed > 0.0 {
+            half = less(half, 0.5 * (value.max - value.min) / speed);
+        }
+    }
+    let reach = DVec3::from_array(way) * half;
+    let is_long = reach.abs().max_element() >= LEAST_REACH;
+    let middle = DVec3::from_array(middle);
+    (half > 0.0 && is_long).then(|| (Segment { middle, reach }, 1.0 / half))
 }
 
 /// Whether all numbers within bounds are finite: noise has no value where a coordinate is not.

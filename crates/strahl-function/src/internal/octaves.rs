@@ -5,6 +5,8 @@
 //!
 //! The noise of several octaves is computed side by side; what does not depend on the point is computed once.
 
+mod rates;
+
 use super::fractal::numbered;
 use crate::bounds::Bounds;
 use crate::rounding::{greater, less};

@@ -10,7 +10,7 @@ use strahl_simd::{Isa, Simd, dispatch};
 const ROUNDING: f64 = 1e-12;
 
 /// Two numbers, the lower one first.
-type Range = (f64, f64);
+pub(super) type Range = (f64, f64);
 
 /// Bounds of [`noise`](super::noise) over the box from `min` to `max`: exact for points, up to about three times as wide as
 /// need be for small boxes, `(0, 1)` for boxes that reach over more than two cells of the lattice.
@@ -109,6 +109,22 @@ impl Course {
             rate: hull(self.rate, other.rate),
         }
     }
+
+    /// Bounds also of places so near to the box that noise changes by no more than `pad` on the way, and its derivatives by four times as much.
+    #[inline(always)]
+    fn widened(self, pad: f64, way: Option<&[Range; 3]>) -> Self {
+        let off = 4.0 * pad * way.map_or(0.0, speed);
+        Self {
+            value: (self.value.0 - pad, self.value.1 + pad),
+            rate: (self.rate.0 - off, self.rate.1 + off),
+        }
+    }
+}
+
+/// How fast coordinates change at most, in all.
+#[inline(always)]
+fn speed(way: &[Range; 3]) -> f64 {
+    way.iter().map(|(a, b)| a.abs().max(b.abs())).sum()
 }
 
 #[inline(always)]
@@ -126,9 +142,7 @@ fn within<I: Isa>(
     let (min, max) = (min + shift, max + shift);
     let min = isa.load(&[min.x, min.y, min.z, 0.0]);
     let max = isa.load(&[max.x, max.y, max.z, 0.0]);
-    let speed: f64 = way.map_or(0.0, |way| {
-        way.iter().map(|(a, b)| a.abs().max(b.abs())).sum()
-    });
+    let speed = way.map_or(0.0, speed);
     scaled(over_cells(isa, min, max, way, generator), speed, generator)
 }
 
@@ -145,11 +159,7 @@ fn scaled(raw: Option<Course>, speed: f64, generator: NoiseGenerator) -> Course 
         end(value.0, -ROUNDING, generator),
         end(value.1, ROUNDING, generator),
     );
-    let factor = match generator {
-        NoiseGenerator::Original => 1.0,
-        NoiseGenerator::RangeCorrected => 0.48985582,
-        NoiseGenerator::Perlin => 0.795,
-    };
+    let factor = factor(generator);
     let pad = ROUNDING * 16.0 * speed;
     let mut rate = (rate.0 * factor - pad, rate.1 * factor + pad);
     // Where noise is cut off it does not change.
@@ -162,9 +172,19 @@ fn scaled(raw: Option<Course>, speed: f64, generator: NoiseGenerator) -> Course 
     }
 }
 
+/// How fast noise changes with the sum over the corners.
+#[inline(always)]
+pub(super) fn factor(generator: NoiseGenerator) -> f64 {
+    match generator {
+        NoiseGenerator::Original => 1.0,
+        NoiseGenerator::RangeCorrected => 0.48985582,
+        NoiseGenerator::Perlin => 0.795,
+    }
+}
+
 /// From the sum over the corners to the noise.
 #[inline(always)]
-fn end(x: f64, pad: f64, generator: NoiseGenerator) -> f64 {
+pub(super) fn end(x: f64, pad: f64, generator: NoiseGenerator) -> f64 {
     unit(match generator {
         NoiseGenerator::Original => x + 0.5 + pad,
         NoiseGenerator::RangeCorrected => (x + 1.05242) * 0.48985582 + pad,
@@ -187,7 +207,11 @@ fn over_cells<I: Isa>(
         return None;
     }
     let (zero, one) = (isa.splat(0.0), isa.splat(1.0));
-    let (first, last) = (isa.floor(min), isa.floor(max));
+    let (min, max, is_cut) = without_slivers(isa, min, max);
+    let first = isa.floor(min);
+    // A box that ends at a plane reaches no further.
+    let ceil = isa.sub(zero, isa.floor(isa.sub(zero, max)));
+    let last = isa.max(first, isa.sub(ceil, one));
     if isa.lt(one, isa.sub(last, first)) != 0 {
         return None;
     }
@@ -207,10 +231,33 @@ fn over_cells<I: Isa>(
         };
         steps = steps.wrapping_sub(axes) & axes;
         if steps == 0 {
-            return Some(all);
+            return Some(if is_cut {
+                all.widened(16.0 * SLIVER, way)
+            } else {
+                all
+            });
         }
         hull = Some(all);
     }
+}
+
+/// Boxes that reach no further into a cell, in part no more than a thousandth of their width, are bounded without that part.
+const SLIVER: f64 = 1e-9;
+
+/// The box without the slivers that lie in further cells, as one has that lies along the planes of the lattice and is widened for rounding; and
+/// whether there are any. Noise and its derivatives are continuous, so they hardly change there.
+#[inline(always)]
+fn without_slivers<I: Isa>(isa: I, min: I::F64x4, max: I::F64x4) -> (I::F64x4, I::F64x4, bool) {
+    let zero = isa.splat(0.0);
+    let width = isa.sub(max, min);
+    let limit = isa.min(isa.splat(SLIVER), isa.mul(isa.splat(1e-3), width));
+    let above = isa.sub(zero, isa.floor(isa.sub(zero, min)));
+    let below = isa.floor(max);
+    let (near, far) = (isa.sub(above, min), isa.sub(max, below));
+    let from = isa.choose_le(near, limit, above, min);
+    let to = isa.choose_le(far, limit, below, max);
+    let cut = isa.lt(min, from) | isa.lt(to, max);
+    (from, to, cut != 0)
 }
 
 /// The values and gradients of the four lower (0) or upper (1) corners of a cell along z; corner `2 i + j` is the lower or the upper one along x
@@ -581,6 +628,41 @@ mod tests {
         let all = (f64::NEG_INFINITY, f64::INFINITY);
         let found = noise_rate(min, max, &[(1.0, 1.0); 3], Perlin);
         assert_eq!(found, ((0.0, 1.0), all));
+    }
+
+    #[test]
+    fn boxes_along_planes_of_the_lattice_may_reach_a_little_further() {
+        let mut random = Random(3);
+        for generator in [NoiseGenerator::Original, NoiseGenerator::RangeCorrected] {
+            for case in 0..400 {
+                let min = ((random.cube() - DVec3::splat(0.5)) * 40.0).round() * 0.25;
+                let max = min + DVec3::splat(0.25);
+                let pad = [1e-13, 9e-10, 1e-9, 1e-7][case % 4];
+                let (from, to) = (min - DVec3::splat(pad), max + DVec3::splat(pad));
+                let way = random.cube() * 2.0 - DVec3::ONE;
+                let rates = way.to_array().map(|w| (w, w));
+                let (inner, _) = noise_rate(min, max, &rates, generator);
+                let (outer, (fall, rise)) = noise_rate(from, to, &rates, generator);
+                assert!(outer.0 <= inner.0 && outer.1 >= inner.1);
+                if pad < 1e-9 {
+                    assert!(outer.1 - outer.0 <= inner.1 - inner.0 + 5e-8);
+                }
+                for _ in 0..20 {
+                    let at = |x: f64| {
+                        // At the very ends every other time.
+                        if x < 0.25 { 0.0 } else { (x - 0.25).min(0.5) * 2.0 }
+                    };
+                    let t = random.cube().to_array().map(at);
+                    let p = from + (to - from) * DVec3::from_array(t);
+                    let value = noise(p, generator);
+                    assert!(outer.0 <= value && value <= outer.1, "{value} {outer:?}");
+                    let step = 1e-5;
+                    let slope = (noise(p + way * step, generator) - value) / step;
+                    let room = 1e-3;
+                    assert!(fall - room <= slope && slope <= rise + room, "{slope}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -23,10 +23,12 @@
 mod bounds;
 mod kernel;
 mod plane;
+mod segment;
 mod tables;
 
 pub use bounds::{noise_bounds, noise_rate, store_octave_bounds};
 pub use plane::{PlaneBounds, PlaneNoise, plane_noise, plane_noise_bounds};
+pub use segment::{Along, LEAST_REACH, Segment, noise_along, store_octaves_along};
 
 use crate::DVec3;
 use strahl_simd::{Isa, Simd, dispatch};

@@ -1,5 +1,5 @@
 use super::*;
-use strahl_math::noise::noise;
+use strahl_math::noise::{Segment, noise};
 
 /// The sums as their formulas are written.
 fn plain(sum: Sum, parameters: &Parameters, p: DVec3) -> f64 {
@@ -259,4 +259,65 @@ fn where_noise_can_be_anything_so_can_its_sums() {
         let octaves = Octaves::new(sum, &[0.5, 2.0, 5.0, 0.7, 0.8, 2.0]);
         assert!(octaves.bounds(&infinite).nan, "{sum:?}");
     }
+}
+
+#[test]
+fn segments_bound_values_and_how_fast_they_change() {
+    let mut random = Random(4);
+    let (mut known, mut narrow, mut steep) = (0, 0, 0);
+    for case in 0..6000 {
+        let sum = [Sum::Hetero, Sum::Ridge, Sum::Ridged][case % 3];
+        let parameters = random.parameters(sum);
+        if parameters.iter().any(|x| x.is_nan()) {
+            continue;
+        }
+        let octaves = Octaves::new(sum, &parameters);
+        let size = random.one_of(&[1e-5, 1e-3, 0.02, 0.2]);
+        let segment = Segment {
+            middle: random.point(),
+            reach: DVec3::new(
+                random.within(-1.0, 1.0),
+                random.within(-1.0, 1.0),
+                random.within(-1.0, 1.0),
+            ) * size,
+        };
+        let Some((values, rate)) = octaves.along(segment) else {
+            continue;
+        };
+        let at = |s: f64| octaves.value(segment.middle + segment.reach * s);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for _ in 0..20 {
+            let (a, b) = (random.within(-1.0, 1.0), random.within(-1.0, 1.0));
+            let (p, q) = (at(a), at(b));
+            assert!(values.contains(p), "{sum:?} {parameters:?} {p} {values:?}");
+            (low, high) = (low.min(p).min(q), high.max(p).max(q));
+            if rate.nan {
+                continue;
+            }
+            let (x, y) = ((b - a) * rate.min, (b - a) * rate.max);
+            // Coordinates are rounded, too, by the gradient noise to multiples of 2⁻²⁹.
+            let mut step = match octaves.generator {
+                NoiseGenerator::Perlin => 4e-9,
+                _ => 2e-15 * segment.middle.abs().max_element(),
+            };
+            for _ in 1..octaves.count {
+                step *= parameters[usize::from(sum != Sum::Ridge)].abs().max(1.0);
+            }
+            let largest = values.max.abs().max(values.min.abs()) + 1.0;
+            let room = 1e-11 * largest + 100.0 * step * largest;
+            let change = q - p;
+            assert!(
+                x.min(y) - room <= change && change <= x.max(y) + room,
+                "{sum:?} {parameters:?} {segment:?}: {change}, not {x}..{y}"
+            );
+        }
+        if !rate.nan {
+            known += 1;
+            narrow += u32::from(values.max - values.min < 3.0 * (high - low));
+            steep += u32::from(rate.min > 0.0 || rate.max < 0.0);
+        }
+    }
+    assert!(known > 1500, "{known}");
+    assert!(narrow > known / 3, "{narrow} of {known}");
+    assert!(steep > known / 3, "{steep} of {known}");
 }

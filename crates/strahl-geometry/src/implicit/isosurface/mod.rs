@@ -15,7 +15,7 @@ use crate::{
 };
 use search::{Course, Search, least_value, side};
 use std::ops::ControlFlow;
-use strahl_function::{Bounds, Function, Workspace};
+use strahl_function::{Bounds, Function, Rates, Workspace};
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
@@ -63,8 +63,8 @@ pub struct Isosurface {
     container: Container,
     options: IsosurfaceOptions,
     is_bounded: bool,
-    /// Whether bounds of the derivative along a ray can be known.
-    has_rates: bool,
+    /// Of which arguments rates of change can be known.
+    rates: Rates,
     octree: Octree,
     /// How far cells are widened when they are examined.
     cell_pad: DVec3,
@@ -125,7 +125,7 @@ impl Isosurface {
         crate::primitives::check_positive("accuracy of the isosurface", options.accuracy)?;
         crate::primitives::check_positive("max_gradient of the isosurface", options.max_gradient)?;
         let is_bounded = function.is_bounded();
-        let has_rates = function.has_rates();
+        let rates = function.rates();
         let bounds = container.bounds();
         let cell_pad = DVec3::splat(CELL_PAD * bounds.max_abs());
         Ok(Self {
@@ -133,7 +133,7 @@ impl Isosurface {
             container,
             options,
             is_bounded,
-            has_rates,
+            rates,
             octree: Octree::new(bounds, LEVELS),
             cell_pad,
             reach: bounds.padded(cell_pad),
@@ -189,6 +189,19 @@ impl Isosurface {
         (self.less_threshold(values), rate)
     }
 
+    /// The same on the segment between two points of a line with that direction.
+    fn rate_along(
+        &self,
+        workspace: &mut Workspace,
+        (from, to): (DVec3, DVec3),
+        direction: DVec3,
+    ) -> (Bounds, Bounds) {
+        let ends = [&from.to_array()[..], &to.to_array()];
+        let way = direction.to_array();
+        let (values, rate) = self.function.rate_along(workspace, ends, &way);
+        (self.less_threshold(values), rate)
+    }
+
     /// Bounds of the derivative along a direction in a cell of the octree, if they are known.
     fn rate_in(
         &self,
@@ -222,6 +235,11 @@ impl Isosurface {
         } else {
             Content::Surface
         }
+    }
+
+    /// The largest extent of one of the octree's smallest cells.
+    fn cell_size(&self) -> f64 {
+        self.size() / f64::from(1_u32 << LEVELS)
     }
 
     /// The largest extent of the container.
@@ -275,6 +293,8 @@ impl Isosurface {
             last: if skips { needed.min } else { 0.0 },
             value: None,
             inside: None,
+            stride: 0.0,
+            resume: f64::NEG_INFINITY,
             visit,
         };
         if from == Some(SURFACE) {
@@ -313,6 +333,7 @@ impl Isosurface {
             rough,
             origin: ray.at(start),
             direction: ray.direction,
+            speed,
             shortest: shortest / speed,
             slope: self.options.max_gradient * ray.direction.length(),
             rate_in_cell: None,

@@ -4,7 +4,7 @@ use super::{Event, Isosurface, SURFACE};
 use crate::implicit::octree::{Cell, Content, Visitor};
 use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
-use strahl_function::{Bounds, Workspace};
+use strahl_function::{Bounds, Rates, Workspace};
 use strahl_math::roots::find_crossing;
 use strahl_math::{Aabb, DVec3, Interval};
 
@@ -18,6 +18,8 @@ pub(super) struct Search<'a> {
     pub(super) rough: Interval,
     pub(super) origin: DVec3,
     pub(super) direction: DVec3,
+    /// The largest component of the direction.
+    pub(super) speed: f64,
     /// Parts of this length are not divided any more.
     pub(super) shortest: f64,
     /// At least the largest change of the function per unit of `s`, if it has no bounds and the scene's gradient is trusted.
@@ -55,10 +57,12 @@ impl Search<'_> {
     ///
     /// Every change of sign between the ends is found, and every further pair of changes that is further apart than the
     /// shortest part, unless the function has no bounds and is steeper than the scene says.
+    ///
+    /// Bounds of the value and of its derivative in between are `known` if they have been asked for before.
     pub(super) fn run(
         &mut self,
-        from: Place,
-        to: Place,
+        (from, to): (Place, Place),
+        known: Option<(Bounds, Bounds)>,
         visit: &mut impl FnMut(f64) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let changes = from.is_inside() != to.is_inside();
@@ -74,17 +78,20 @@ impl Search<'_> {
         }
         let length = to.s - from.s;
         let is_short = length <= self.shortest;
-        let has_rates = self.surface.has_rates && !is_short;
+        let has_rates = self.surface.rates != Rates::Unknown && !is_short;
         // Most parts without a surface are excluded by bounds of the values alone, which take less time than those of the rate, in which
         // they are contained; but hardly any that the rate in the whole cell does not exclude.
-        let is_left_out =
-            changes || has_rates && (self.rate_in_cell.is_some() || is_near_zero(from, to));
+        let is_left_out = changes
+            || has_rates
+                && (self.rate_in_cell.is_some()
+                    || self.surface.rates == Rates::OfSegments
+                    || is_near_zero(from, to));
         if !is_left_out && self.excludes(from, to, is_short) {
             return ControlFlow::Continue(());
         }
         let mut is_monotone = false;
         if has_rates {
-            let (values, rate) = self.rate(from.s, to.s);
+            let (values, rate) = known.unwrap_or_else(|| self.rate(from.s, to.s));
             is_monotone = !rate.nan && (rate.min > 0.0 || rate.max < 0.0);
             if !changes && (stays_away(from, to, rate) || side(values).is_some()) {
                 return ControlFlow::Continue(());
@@ -106,8 +113,8 @@ impl Search<'_> {
                 ControlFlow::Continue(())
             };
         }
-        self.run(from, middle, visit)?;
-        self.run(middle, to, visit)
+        self.run((from, middle), None, visit)?;
+        self.run((middle, to), None, visit)
     }
 
     /// The box around the part of the ray between two places.
@@ -130,10 +137,10 @@ impl Search<'_> {
     }
 
     /// Bounds of the function, less the threshold, between two places, and of its derivative along the ray.
-    fn rate(&mut self, from: f64, to: f64) -> (Bounds, Bounds) {
-        let cell = self.around(from, to);
+    pub(super) fn rate(&mut self, from: f64, to: f64) -> (Bounds, Bounds) {
+        let ends = (self.point(from), self.point(to));
         self.surface
-            .rate_within(self.workspace, &cell, self.direction)
+            .rate_along(self.workspace, ends, self.direction)
     }
 }
 
@@ -203,7 +210,30 @@ pub(super) struct Course<'a, V> {
     pub(super) value: Option<f64>,
     /// Whether the ray is inside of the surface there, once it has begun.
     pub(super) inside: Option<bool>,
+    /// How much of the ray is bounded at once, if that is more than its part in a cell.
+    pub(super) stride: f64,
+    /// The ray certainly meets no surface until there.
+    pub(super) resume: f64,
     pub(super) visit: &'a mut V,
+}
+
+impl<V> Course<'_, V> {
+    /// As much of the ray as hardly meets the surface, if the function changes as in the part before, whose bounds are given; but no more than
+    /// is worthwhile.
+    fn next_stride(&self, (values, rate): (Bounds, Bounds)) -> f64 {
+        /// Longer parts go through so many cells of noise that the bounds are too wide.
+        const CELLS: f64 = 2.0;
+        let (least, fall) = match self.inside {
+            Some(true) => (-values.max, rate.max),
+            _ => (values.min, -rate.min),
+        };
+        let most = CELLS * self.search.surface.cell_size() / self.search.speed;
+        if rate.nan || fall <= 0.0 || least >= fall * most {
+            most
+        } else {
+            least / fall
+        }
+    }
 }
 
 impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
@@ -213,6 +243,10 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
 
     fn content(&mut self, cell: &Aabb) -> Content {
         self.search.surface.content(self.search.workspace, cell)
+    }
+
+    fn resume(&self) -> f64 {
+        self.resume
     }
 
     fn begin(&mut self, is_inside: Option<bool>) -> ControlFlow<()> {
@@ -251,6 +285,23 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         if !(enter < exit) {
             return ControlFlow::Continue(());
         }
+        let mut known = None;
+        if self.search.surface.rates == Rates::OfSegments && enter >= self.last {
+            let until = (enter + self.stride).clamp(exit, self.length);
+            let mut bounds = self.search.rate(enter, until);
+            let inside = side(bounds.0);
+            if inside.is_some() && inside == self.inside {
+                (self.last, self.value) = (exit, None);
+                self.resume = until;
+                self.stride = self.next_stride(bounds);
+                return ControlFlow::Continue(());
+            }
+            self.stride = 0.0;
+            if until > exit {
+                bounds = self.search.rate(enter, exit);
+            }
+            known = Some(bounds);
+        }
         let mut first = match self.value {
             Some(value) if enter == self.last => Place { s: enter, value },
             _ => self.search.place(enter),
@@ -272,7 +323,8 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         let last = search.place(exit);
         (self.last, self.value) = (exit, Some(last.value));
         let start = search.start;
-        let has_rates = search.surface.has_rates && first.is_inside() == last.is_inside();
+        let has_rates =
+            search.surface.rates == Rates::OfBoxes && first.is_inside() == last.is_inside();
         search.rate_in_cell = if has_rates {
             let surface = search.surface;
             surface.rate_in(search.workspace, cell, search.direction)
@@ -280,7 +332,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
             None
         };
         let Self { search, visit, .. } = self;
-        let flow = search.run(first, last, &mut |s| {
+        let flow = search.run((first, last), known, &mut |s| {
             inside = !inside;
             let side = if inside { Side::Enter } else { Side::Exit };
             let hit = PrimHit::simple(start + s, SURFACE.facet);
