@@ -63,6 +63,8 @@ pub(super) struct Octaves {
     total: f64,
     /// Octaves of a point with coordinates up to this size are within reach of noise.
     reach: f64,
+    /// How many times as fast the last octave changes as the first one, if not slower.
+    finest: f64,
     /// Whether bounds need no care for numbers that are extreme or have an unusual sign.
     is_usual: bool,
 }
@@ -116,6 +118,7 @@ impl Octaves {
             generator: numbered(generator),
             count: 1 + weights.len(),
             reach: reach(lacunarity, weights.len()),
+            finest: finest(lacunarity, weights.len()),
             weights: weights.into(),
             part,
             offset,
@@ -152,6 +155,7 @@ impl Octaves {
             generator: numbered(generator),
             count: weights.len(),
             reach: reach(lambda, weights.len() - 1),
+            finest: finest(lambda, weights.len() - 1),
             weights: weights.into(),
             part: 0.0,
             offset,
@@ -471,6 +475,12 @@ fn reach(lacunarity: f64, octaves: usize) -> f64 {
         };
     }
     reach
+}
+
+/// How many times as fast noise changes after so many octaves more, if not slower.
+fn finest(lacunarity: f64, octaves: usize) -> f64 {
+    let growth = greater(lacunarity.abs(), 1.0);
+    (0..octaves).fold(1.0, |finest, _| finest * growth)
 }
 
 /// The distance of 0 or 1, whichever is further.

@@ -207,11 +207,15 @@ fn over_cells<I: Isa>(
         return None;
     }
     let (zero, one) = (isa.splat(0.0), isa.splat(1.0));
-    let (min, max, is_cut) = without_slivers(isa, min, max);
-    let first = isa.floor(min);
-    // A box that ends at a plane reaches no further.
-    let ceil = isa.sub(zero, isa.floor(isa.sub(zero, max)));
-    let last = isa.max(first, isa.sub(ceil, one));
+    let (mut min, mut max, mut is_cut) = (min, max, false);
+    let (mut first, mut last) = (isa.floor(min), isa.floor(max));
+    if isa.lt(first, last) != 0 && has_slivers(isa, min, max, first, last) {
+        (min, max, is_cut) = without_slivers(isa, min, max);
+        first = isa.floor(min);
+        // A box that ends at a plane reaches no further.
+        let ceil = isa.sub(zero, isa.floor(isa.sub(zero, max)));
+        last = isa.max(first, isa.sub(ceil, one));
+    }
     if isa.lt(one, isa.sub(last, first)) != 0 {
         return None;
     }
@@ -243,6 +247,20 @@ fn over_cells<I: Isa>(
 
 /// Boxes that reach no further into a cell, in part no more than a thousandth of their width, are bounded without that part.
 const SLIVER: f64 = 1e-9;
+
+/// Whether a box may reach so little into cells at one of its ends. What is computed for one that does takes more time.
+#[inline(always)]
+fn has_slivers<I: Isa>(
+    isa: I,
+    min: I::F64x4,
+    max: I::F64x4,
+    first: I::F64x4,
+    last: I::F64x4,
+) -> bool {
+    let limit = isa.splat(SLIVER);
+    let near_upper = isa.le(isa.sub(isa.add(first, isa.splat(1.0)), min), limit);
+    (near_upper | isa.le(isa.sub(max, last), limit)) & 0b111 != 0
+}
 
 /// The box without the slivers that lie in further cells, as one has that lies along the planes of the lattice and is widened for rounding; and
 /// whether there are any. Noise and its derivatives are continuous, so they hardly change there.
@@ -650,7 +668,11 @@ mod tests {
                 for _ in 0..20 {
                     let at = |x: f64| {
                         // At the very ends every other time.
-                        if x < 0.25 { 0.0 } else { (x - 0.25).min(0.5) * 2.0 }
+                        if x < 0.25 {
+                            0.0
+                        } else {
+                            (x - 0.25).min(0.5) * 2.0
+                        }
                     };
                     let t = random.cube().to_array().map(at);
                     let p = from + (to - from) * DVec3::from_array(t);

@@ -69,7 +69,7 @@ const SHORTEST: f64 = 0.0625;
 /// Segments of less than this size have no [`Along`]: differences of their coefficients have too few digits. Boxes do as well there.
 pub const LEAST_REACH: f64 = 1e-6;
 
-/// A segment that is in more cells is not bounded.
+/// Segments that meet one plane of the lattice along each axis are in so many cells.
 const MOST: usize = 4;
 
 /// Room for the pieces of several octaves: a multiple of four.
@@ -79,7 +79,7 @@ const ROOM: usize = 24;
 const ROUNDING: f64 = 1e-12;
 
 /// Stores bounds of noise along segments of which the first is `segment` and each is the one before times `lacunarity`; those that reach
-/// into more than four cells of the lattice, or beyond the range of 32-bit integers, have [`Along::UNKNOWN`]. All count by the
+/// over more than one plane of the lattice along an axis, or beyond the range of 32-bit integers, have [`Along::UNKNOWN`]. All count by the
 /// parameter of the first one. `segment` becomes the one after the last.
 ///
 /// Points on the segments may be rounded by a few places of their last bits.
@@ -188,75 +188,67 @@ impl Pieces {
         };
         let (middle, reach) = (segment.middle.to_array(), segment.reach.to_array());
         let (mut start, mut way) = ([0.0; 3], [0.0; 3]);
-        let (mut cell, mut planes) = ([0.0; 3], 0.0);
+        let (mut cell, mut step) = ([0.0; 3], [0.0; 3]);
+        // Where a plane is met along each axis; beyond the end if none is.
+        let mut plane = [2.0; 3];
+        let (mut is_near, mut pieces) = (true, 1);
         for axis in 0..3 {
             let (m, r) = (middle[axis] + shift, reach[axis]);
             let (a, b) = (m - r, m + r);
-            // Also refuses NaN.
-            if !(a.abs() < OVERFLOW && b.abs() < OVERFLOW) {
-                return false;
-            }
             start[axis] = a;
             way[axis] = r + r;
             cell[axis] = a.floor();
-            planes += (b.floor() - cell[axis]).abs();
+            step[axis] = b.floor() - cell[axis];
+            // Also refuses NaN.
+            is_near &= a.abs() < OVERFLOW && b.abs() < OVERFLOW && step[axis].abs() <= 1.0;
+            let is_met = step[axis] != 0.0;
+            let upper = more(step[axis], 0.0);
+            let at = (cell[axis] + upper - a) / (r + r);
+            plane[axis] = if is_met { at } else { 2.0 };
+            pieces += usize::from(is_met);
         }
-        if planes >= MOST as f64 {
+        if !is_near {
             return false;
         }
-        // Where the next plane is met along each axis.
-        let mut next = [f64::INFINITY; 3];
-        if planes > 0.0 {
-            for axis in 0..3 {
-                next[axis] = meeting(cell[axis], start[axis], way[axis]);
-            }
-        }
-        let mut from = 0.0;
-        for _ in 0..planes as usize {
-            let axis = if next[0] <= next[1] && next[0] <= next[2] {
-                0
-            } else if next[1] <= next[2] {
-                1
+        let [x, y, z] = plane;
+        let (near, far) = (less(x, y), more(x, y));
+        let (first, middle) = (less(near, z), more(near, z));
+        let ends = [0.0, first, less(middle, far), more(middle, far), 1.0];
+        for piece in 0..pieces {
+            let from = ends[piece];
+            let to = if piece + 1 == pieces {
+                1.0
             } else {
-                2
+                ends[piece + 1]
             };
-            let to = next[axis];
-            if !(to < 1.0) {
-                break;
-            }
-            self.push(octave, (start, way), cell, (from, to));
-            cell[axis] += if way[axis] > 0.0 { 1.0 } else { -1.0 };
-            next[axis] = meeting(cell[axis], start[axis], way[axis]);
-            from = to;
+            self.push(octave, (start, way), (cell, step, plane), (from, to));
         }
-        self.push(octave, (start, way), cell, (from, 1.0));
         true
     }
 
+    /// Adds the piece between two parameters of a segment that starts in a cell and steps into the next one where it meets a plane.
     #[inline(always)]
     fn push(
         &mut self,
         octave: usize,
         (start, way): ([f64; 3], [f64; 3]),
-        cell: [f64; 3],
-        (mut from, mut to): (f64, f64),
+        (cell, step, plane): ([f64; 3], [f64; 3], [f64; 3]),
+        (from, to): (f64, f64),
     ) {
-        if to - from < SHORTEST {
-            if from > SHORTEST {
-                from = to - SHORTEST;
-            } else {
-                to = from + SHORTEST;
-            }
-        }
+        // Longer at its end, or at its start if that is where the segment ends.
+        let longer = more(to, from + SHORTEST);
+        let over = more(longer - 1.0, 0.0);
+        let (first, last) = (from - over, longer - over);
         let at = self.count % ROOM;
         for axis in 0..3 {
-            let first = start[axis] - cell[axis];
-            self.from[axis][at] = first + from * way[axis];
-            self.to[axis][at] = first + to * way[axis];
-            self.cells[axis][at] = cell[axis];
+            let cell = cell[axis] + if plane[axis] <= from { step[axis] } else { 0.0 };
+            let origin = start[axis] - cell;
+            self.from[axis][at] = origin + first * way[axis];
+            self.to[axis][at] = origin + last * way[axis];
+            self.cells[axis][at] = cell;
         }
         self.octaves[at] = octave;
-        self.per[at] = 0.5 * DEGREE as f64 / (to - from);
+        self.per[at] = 0.5 * DEGREE as f64 / (last - first);
         self.count += 1;
     }
 
@@ -385,18 +377,6 @@ impl Pieces {
             let g = perlin_gradient(cell, [n >> 2, n >> 1 & 1, n & 1]);
             [0.0, g.x, g.y, g.z]
         })
-    }
-}
-
-/// Where a line leaves its cell along an axis, if `start` is where it is at 0, and `start + way` at 1.
-#[inline(always)]
-fn meeting(cell: f64, start: f64, way: f64) -> f64 {
-    if way > 0.0 {
-        (cell + 1.0 - start) / way
-    } else if way < 0.0 {
-        (cell - start) / way
-    } else {
-        f64::INFINITY
     }
 }
 
@@ -537,7 +517,7 @@ mod tests {
                         wide += (along.value.1 - along.value.0 - pad) / (high - low).max(1e-12);
                     }
                 }
-                assert!(known > if size > 1.0 { 200 } else { 500 }, "{known}");
+                assert!(known > if size > 1.0 { 100 } else { 500 }, "{known}");
                 // Twenty points do not show the whole range.
                 assert!(wide < 1.6 * f64::from(known), "{generator:?} {size} {wide}");
                 assert!(

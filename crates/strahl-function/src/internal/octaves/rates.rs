@@ -133,13 +133,17 @@ impl Total {
     }
 }
 
+/// Segments that are longer than so many cells of the last octave certainly meet several planes of its lattice along an axis.
+const LONGEST: f64 = 2.0;
+
 impl Octaves {
-    /// Bounds of the values on a segment, and of their derivative by its parameter. The derivative is unknown where a segment reaches over
-    /// several cells of an octave, and for unusual parameters; then so are the values.
+    /// Bounds of the values on a segment, and of their derivative by its parameter, which is unknown where the segment meets several planes of an
+    /// octave's lattice along an axis. `None` if it is longer than that, and for unusual parameters.
     pub(in super::super) fn along(&self, segment: Segment) -> Option<(Bounds, Bounds)> {
         let near = |x: f64| x.abs() <= 0.5 * self.reach;
         let ends = [segment.middle, segment.reach].map(|v| v.to_array());
-        if !self.is_usual || !ends.as_flattened().iter().all(|&x| near(x)) {
+        let length = 2.0 * segment.reach.abs().max_element() * self.finest;
+        if !self.is_usual || length > LONGEST || !ends.as_flattened().iter().all(|&x| near(x)) {
             return None;
         }
         let mut noises = Noises {

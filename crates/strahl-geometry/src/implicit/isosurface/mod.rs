@@ -94,6 +94,10 @@ const CELL_PAD: f64 = 256.0 * f64::EPSILON;
 /// The octree's cells are halved so often.
 const LEVELS: u32 = 6;
 
+/// So many cells at most are bounded at once, where the function may be bounded on segments: longer ones go through so many cells of noise that
+/// bounds are too wide.
+const STRIDE: f64 = 2.0;
+
 /// The shortest and the longest part of a ray that is not divided, as a part of the container's size.
 const SHORTEST: (f64, f64) = (1e-6, 1e-3);
 
@@ -128,7 +132,7 @@ impl Isosurface {
         let rates = function.rates();
         let bounds = container.bounds();
         let cell_pad = DVec3::splat(CELL_PAD * bounds.max_abs());
-        Ok(Self {
+        let mut surface = Self {
             function,
             container,
             options,
@@ -137,6 +141,26 @@ impl Isosurface {
             octree: Octree::new(bounds, LEVELS),
             cell_pad,
             reach: bounds.padded(cell_pad),
+        };
+        if rates == Rates::OfSegments && !surface.has_rates_in_cells() {
+            surface.rates = Rates::Unknown;
+        }
+        Ok(surface)
+    }
+
+    /// Whether rates are known on segments as long as those that rays have in the octree's cells. If the function is so fine that they are not,
+    /// bounds of the values tell as much in shorter parts, in less time.
+    fn has_rates_in_cells(&self) -> bool {
+        let bounds = self.container.bounds();
+        let reach = DVec3::ONE * (0.5 * STRIDE * self.cell_size());
+        // By chance a segment may meet too many cells of noise.
+        let places = [0.27, 0.51, 0.83].map(|at| bounds.min + bounds.size() * at);
+        with_workspace(|workspace| {
+            places.iter().any(|&place| {
+                let ends = (place - reach, place + reach);
+                let (_, rate) = self.rate_along(workspace, ends, reach);
+                !rate.nan
+            })
         })
     }
 
@@ -335,6 +359,7 @@ impl Isosurface {
             direction: ray.direction,
             speed,
             shortest: shortest / speed,
+            has_segments: self.rates == Rates::OfSegments,
             slope: self.options.max_gradient * ray.direction.length(),
             rate_in_cell: None,
         }

@@ -1,6 +1,6 @@
 //! The crossings of one ray with a surface, found in parts that shrink until they are proven empty or short.
 
-use super::{Event, Isosurface, SURFACE};
+use super::{Event, Isosurface, STRIDE, SURFACE};
 use crate::implicit::octree::{Cell, Content, Visitor};
 use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
@@ -22,6 +22,8 @@ pub(super) struct Search<'a> {
     pub(super) speed: f64,
     /// Parts of this length are not divided any more.
     pub(super) shortest: f64,
+    /// Whether rates are known on segments only, and have been on all that were asked for.
+    pub(super) has_segments: bool,
     /// At least the largest change of the function per unit of `s`, if it has no bounds and the scene's gradient is trusted.
     pub(super) slope: f64,
     /// Bounds of the derivative along the ray in the cell that is searched, if they are known. Whatever they exclude the search would exclude
@@ -78,14 +80,12 @@ impl Search<'_> {
         }
         let length = to.s - from.s;
         let is_short = length <= self.shortest;
-        let has_rates = self.surface.rates != Rates::Unknown && !is_short;
+        let has_rates = (self.surface.rates == Rates::OfBoxes || self.has_segments) && !is_short;
         // Most parts without a surface are excluded by bounds of the values alone, which take less time than those of the rate, in which
         // they are contained; but hardly any that the rate in the whole cell does not exclude.
         let is_left_out = changes
             || has_rates
-                && (self.rate_in_cell.is_some()
-                    || self.surface.rates == Rates::OfSegments
-                    || is_near_zero(from, to));
+                && (self.rate_in_cell.is_some() || self.has_segments || is_near_zero(from, to));
         if !is_left_out && self.excludes(from, to, is_short) {
             return ControlFlow::Continue(());
         }
@@ -139,8 +139,11 @@ impl Search<'_> {
     /// Bounds of the function, less the threshold, between two places, and of its derivative along the ray.
     pub(super) fn rate(&mut self, from: f64, to: f64) -> (Bounds, Bounds) {
         let ends = (self.point(from), self.point(to));
-        self.surface
-            .rate_along(self.workspace, ends, self.direction)
+        let (values, rate) = self
+            .surface
+            .rate_along(self.workspace, ends, self.direction);
+        self.has_segments &= !rate.nan;
+        (values, rate)
     }
 }
 
@@ -221,14 +224,12 @@ impl<V> Course<'_, V> {
     /// As much of the ray as hardly meets the surface, if the function changes as in the part before, whose bounds are given; but no more than
     /// is worthwhile.
     fn next_stride(&self, (values, rate): (Bounds, Bounds)) -> f64 {
-        /// Longer parts go through so many cells of noise that the bounds are too wide.
-        const CELLS: f64 = 2.0;
         let (least, fall) = match self.inside {
             Some(true) => (-values.max, rate.max),
             _ => (values.min, -rate.min),
         };
-        let most = CELLS * self.search.surface.cell_size() / self.search.speed;
-        if rate.nan || fall <= 0.0 || least >= fall * most {
+        let most = STRIDE * self.search.surface.cell_size() / self.search.speed;
+        if fall <= 0.0 || least >= fall * most {
             most
         } else {
             least / fall
@@ -286,7 +287,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
             return ControlFlow::Continue(());
         }
         let mut known = None;
-        if self.search.surface.rates == Rates::OfSegments && enter >= self.last {
+        if self.search.has_segments && enter >= self.last {
             let until = (enter + self.stride).clamp(exit, self.length);
             let mut bounds = self.search.rate(enter, until);
             let inside = side(bounds.0);
