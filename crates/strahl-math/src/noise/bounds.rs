@@ -548,24 +548,8 @@ fn blend<I: Isa>(isa: I, a: Course, b: Course, share: Share, asked: bool) -> Cou
 
 #[cfg(test)]
 mod tests {
-    use super::super::noise;
+    use super::super::{noise, random::Random};
     use super::*;
-
-    struct Random(u64);
-
-    impl Random {
-        fn unit(&mut self) -> f64 {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        fn cube(&mut self) -> DVec3 {
-            DVec3::new(self.unit(), self.unit(), self.unit())
-        }
-    }
 
     #[test]
     fn bounds_hold_and_close_in_on_the_value() {

@@ -23,6 +23,8 @@
 mod bounds;
 mod kernel;
 mod plane;
+#[cfg(test)]
+mod random;
 mod segment;
 mod tables;
 

@@ -437,24 +437,8 @@ fn add_product<I: Isa, const A: usize, const S: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{noise, noise_rate};
+    use super::super::{noise, noise_rate, random::Random};
     use super::*;
-
-    struct Random(u64);
-
-    impl Random {
-        fn unit(&mut self) -> f64 {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        fn cube(&mut self) -> DVec3 {
-            DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - DVec3::ONE
-        }
-    }
 
     const GENERATORS: [NoiseGenerator; 3] = [
         NoiseGenerator::Original,
@@ -463,13 +447,13 @@ mod tests {
     ];
 
     fn segment(random: &mut Random, size: f64) -> Segment {
-        let mut reach = random.cube() * size;
+        let mut around = || random.cube() * 2.0 - DVec3::ONE;
+        let (mut reach, mut middle) = (around() * size, around() * 30.0);
         match (random.unit() * 8.0) as u32 {
             0 => reach.x = 0.0,
             1 => reach = DVec3::new(0.0, reach.y, 0.0),
             _ => {}
         }
-        let mut middle = random.cube() * 30.0;
         if random.unit() < 0.1 {
             middle = middle.round();
         }
