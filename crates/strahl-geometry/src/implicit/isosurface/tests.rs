@@ -41,6 +41,27 @@ fn bumpy() -> Function {
     })
 }
 
+/// A sum over octaves of noise, coarse enough to be bounded on segments.
+fn octaves() -> Function {
+    function(|g, [x, y, z]| {
+        let parameters = [0.8, 2.0, 4.0, 0.5, 0.8, 2.0].map(|number| g.constant(number));
+        let [a, b, c, d, e, f] = parameters;
+        g.internal(
+            "f_hetero_mf",
+            &[x, y, z, a, b, c, d, e, f],
+            NoiseGenerator::default(),
+        )
+    })
+}
+
+/// Noise that rounds the point.
+fn rounded_noise() -> Function {
+    function(|g, [x, y, z]| {
+        let [x, y, z] = [x, y, z].map(|c| g.scaled(c, 3.0));
+        g.internal("f_noise3d", &[x, y, z], NoiseGenerator::Perlin)
+    })
+}
+
 fn cube(side: f64) -> Container {
     Container::Box(Cuboid::new(DVec3::splat(-side), DVec3::splat(side)))
 }
@@ -61,6 +82,7 @@ crate::primitive_tests!(in_a_sphere, || iso(
     0.1
 ));
 crate::primitive_tests!(noisy, || iso(bumpy(), cube(1.1), 0.0));
+crate::primitive_tests!(sum_over_octaves, || iso(octaves(), cube(1.0), 0.8));
 
 fn hits(surface: &Isosurface, origin: DVec3, direction: DVec3) -> Vec<(f64, u32)> {
     let mut out = Crossings::default();
@@ -116,6 +138,43 @@ fn rays_from_within_know_the_side_on_which_they_start() {
         surface.crossings(&ray, Interval::FORWARD, None, &mut scratch, &mut out);
         assert_eq!(out.inside_at_start, from.length() < 1.0, "{from}");
     }
+}
+
+#[test]
+fn sums_over_octaves_are_searched_on_segments_if_they_are_coarse() {
+    assert_eq!(iso(octaves(), cube(1.0), 0.8).rates, Rates::OfSegments);
+    assert_eq!(iso(octaves(), cube(20.0), 0.8).rates, Rates::Unknown);
+}
+
+#[test]
+fn rays_that_leave_noise_that_rounds_points_do_not_meet_it_at_once() {
+    let surface = iso(rounded_noise(), cube(1.0), 0.5);
+    let (mut random, mut scratch) = (Random::new(7), Scratch::default());
+    let mut left = 0;
+    for _ in 0..1000 {
+        let (from, to) = (random.cube() * 4.0, random.cube());
+        let ray = Ray::new(from, to - from);
+        let Some(hit) = surface.closest_hit(&ray, Interval::FORWARD, None, &mut scratch) else {
+            continue;
+        };
+        let point = surface.surface_at(&ray, &hit);
+        if hit.surface != SURFACE {
+            continue;
+        }
+        let mut way = random.cube();
+        if way.dot(point.n_geom) < 0.0 {
+            way = -way;
+        }
+        // Along the surface it may be met again.
+        if way.dot(point.n_geom) < 0.1 {
+            continue;
+        }
+        let away = Ray::new(point.position, way);
+        let again = surface.closest_hit(&away, Interval::FORWARD, Some(SURFACE), &mut scratch);
+        assert!(again.is_none_or(|hit| hit.t > 1e-5), "{away:?} {again:?}");
+        left += 1;
+    }
+    assert!(left > 200, "{left}");
 }
 
 #[test]
