@@ -130,7 +130,7 @@ def implicit(
     threshold: float = 0.0,
     declare: Mapping[str, Declared] | None = None,
     accuracy: float = 0.001,
-    max_gradient: float = 1.1,
+    max_gradient: float | None = None,
     open: bool = False,
     material: Look | None = None,
     name: str | None = None,
@@ -138,13 +138,14 @@ def implicit(
     """The surface where a formula of x, y and z in POV-Ray's language has the value ``threshold``, within a box; inside, values are smaller.
 
     ``strahl.implicit("x*x + y*y + A*z*z - 1", declare={"A": 2})``: ``declare`` has the values of names. The functions of ``functions.inc`` are known. The box closes the solid, unless it is
-    ``open``. No gradient has to be guessed; only formulas with patterns need a ``max_gradient``. Parts thinner than ``accuracy`` may be missed. Raises `SceneError` if the formula is wrong.
+    ``open``. No gradient has to be guessed; only formulas with patterns need a ``max_gradient`` (1.1 if there is none), and if there is one for a sum over octaves of noise (``f_ridged_mf``), it is trusted, which is faster than proofs. Parts thinner than ``accuracy`` may be missed. Raises `SceneError` if the formula is wrong.
     """
     numbers: dict[str, Declared] = {"Strahl_low": vector(corner, "corner"), "Strahl_high": vector(opposite, "opposite"), "Strahl_threshold": number(threshold, "threshold")}
+    gradient = "" if max_gradient is None else f'max_gradient {positive(max_gradient, "max_gradient")!r}'
     text = f"""isosurface {{ function {{
 {formula}
 }} contained_by {{ box {{ Strahl_low, Strahl_high }} }} threshold Strahl_threshold
-accuracy {positive(accuracy, "accuracy")!r} max_gradient {positive(max_gradient, "max_gradient")!r} {"open" if open else ""} }}"""
+accuracy {positive(accuracy, "accuracy")!r} {gradient} {"open" if open else ""} }}"""
     return _of_text(text, numbers, declare, material, name)
 
 

@@ -3,6 +3,7 @@
 mod search;
 #[cfg(test)]
 mod tests;
+mod trust;
 
 use super::EXACT;
 use super::container::Container;
@@ -15,6 +16,7 @@ use crate::{
 };
 use search::{Course, Search, least_value, side};
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 use strahl_function::{Bounds, Function, Rates, Workspace};
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
@@ -26,11 +28,17 @@ pub struct IsosurfaceOptions {
     pub threshold: f64,
     /// Features thinner than this along a ray may be missed. Crossings themselves are found to the last digit.
     pub accuracy: f64,
-    /// The largest change of the function per unit of length. Used only if the function calls patterns or pigments, for which
-    /// there are no bounds.
-    pub max_gradient: f64,
+    /// The largest change of the function per unit of length. It is needed if the function calls patterns or pigments, for which there are
+    /// no bounds; `None` is [`IsosurfaceOptions::MAX_GRADIENT`] then. For sums over octaves of noise it takes the place of proofs, unless
+    /// slopes that are measured contradict it. Other functions do without.
+    pub max_gradient: Option<f64>,
     /// Whether the container is invisible where it cuts through the inside.
     pub open: bool,
+}
+
+impl IsosurfaceOptions {
+    /// The gradient of functions without bounds by default.
+    pub const MAX_GRADIENT: f64 = 1.1;
 }
 
 impl Default for IsosurfaceOptions {
@@ -38,7 +46,7 @@ impl Default for IsosurfaceOptions {
         Self {
             threshold: 0.0,
             accuracy: 0.001,
-            max_gradient: 1.1,
+            max_gradient: None,
             open: false,
         }
     }
@@ -47,9 +55,9 @@ impl Default for IsosurfaceOptions {
 /// The surface where a function has a given value, within a container; inside, the function is smaller.
 ///
 /// Hits are certified by interval arithmetic: a part of a ray is skipped only where the function's bounds prove that its sign
-/// does not change, so there are no holes and no gradient has to be guessed, however steep the function is. Only functions that
-/// call patterns or pigments have no bounds; for these [`IsosurfaceOptions::max_gradient`] is trusted, as in POV-Ray. An
-/// octree, whose cells are examined when a ray first meets them, stores where the surface may be at all; it depends on the
+/// does not change, so there are no holes and no gradient has to be guessed, however steep the function is. There are two exceptions:
+/// functions that call patterns or pigments have no bounds, so [`IsosurfaceOptions::max_gradient`] is trusted, as in POV-Ray; and if it is
+/// stated for a sum over octaves of noise, whose bounds take long, it is trusted unless measured slopes contradict it. An octree, whose cells are examined when a ray first meets them, stores where the surface may be at all; it depends on the
 /// function alone, so it does not change the picture.
 ///
 /// Facets: 0 is the function's surface, 1 and up are the facets of the container. NaN counts as outside. There are no texture
@@ -63,6 +71,8 @@ pub struct Isosurface {
     container: Container,
     options: IsosurfaceOptions,
     is_bounded: bool,
+    /// Whether the gradient takes the place of proofs, once a ray has asked.
+    trusts_gradient: OnceLock<bool>,
     /// Of which arguments rates of change can be known.
     rates: Rates,
     octree: Octree,
@@ -127,7 +137,9 @@ impl Isosurface {
             });
         }
         crate::primitives::check_positive("accuracy of the isosurface", options.accuracy)?;
-        crate::primitives::check_positive("max_gradient of the isosurface", options.max_gradient)?;
+        if let Some(gradient) = options.max_gradient {
+            crate::primitives::check_positive("max_gradient of the isosurface", gradient)?;
+        }
         let is_bounded = function.is_bounded();
         let rates = function.rates();
         let bounds = container.bounds();
@@ -137,6 +149,7 @@ impl Isosurface {
             container,
             options,
             is_bounded,
+            trusts_gradient: OnceLock::new(),
             rates,
             octree: Octree::new(bounds, LEVELS),
             cell_pad,
@@ -169,9 +182,10 @@ impl Isosurface {
         &self.function
     }
 
-    /// Whether the function has bounds; otherwise the gradient is trusted.
-    fn is_bounded(&self) -> bool {
-        self.is_bounded
+    /// The largest change of the function per unit of length, as far as it is trusted.
+    fn gradient_limit(&self) -> f64 {
+        let stated = self.options.max_gradient;
+        stated.unwrap_or(IsosurfaceOptions::MAX_GRADIENT)
     }
 
     /// The function less the threshold; infinite where it is not a number.
@@ -246,13 +260,13 @@ impl Isosurface {
         if self.container.excludes(&cell) {
             return Content::Empty { is_inside: None };
         }
-        if self.is_bounded {
+        if !self.trusts_gradient(workspace) {
             return match side(self.bounds_within(workspace, &cell)) {
                 None => Content::Surface,
                 is_inside => Content::Empty { is_inside },
             };
         }
-        let reach = self.options.max_gradient * 0.5 * cell.size().length();
+        let reach = self.gradient_limit() * 0.5 * cell.size().length();
         if self.value(workspace, cell.center()).abs() > reach {
             // What the scene says of the gradient may be wrong.
             Content::Empty { is_inside: None }
@@ -264,6 +278,13 @@ impl Isosurface {
     /// The largest extent of one of the octree's smallest cells.
     fn cell_size(&self) -> f64 {
         self.size() / f64::from(1_u32 << LEVELS)
+    }
+
+    /// Parts of a ray that are not longer are not divided, except for rounding.
+    fn shortest(&self) -> f64 {
+        let (least, most) = SHORTEST;
+        let accuracy = self.options.accuracy;
+        accuracy.clamp(least * self.size(), most * self.size())
     }
 
     /// The largest extent of the container.
@@ -347,20 +368,19 @@ impl Isosurface {
     ) -> Search<'a> {
         // The largest component neither overflows nor vanishes, and is the length but for a factor of at most the root of 3.
         let speed = ray.direction.abs().max_element();
-        let (least, most) = SHORTEST;
-        let accuracy = self.options.accuracy;
-        let shortest = accuracy.clamp(least * self.size(), most * self.size());
+        let trusts_gradient = self.trusts_gradient(workspace);
         Search {
             surface: self,
             workspace,
+            trusts_gradient,
             start,
             rough,
             origin: ray.at(start),
             direction: ray.direction,
             speed,
-            shortest: shortest / speed,
-            has_segments: self.rates == Rates::OfSegments,
-            slope: self.options.max_gradient * ray.direction.length(),
+            shortest: self.shortest() / speed,
+            has_segments: self.rates == Rates::OfSegments && !trusts_gradient,
+            slope: self.gradient_limit() * ray.direction.length(),
             rate_in_cell: None,
         }
     }

@@ -12,6 +12,8 @@ use strahl_math::{Aabb, DVec3, Interval};
 pub(super) struct Search<'a> {
     pub(super) surface: &'a Isosurface,
     pub(super) workspace: &'a mut Workspace,
+    /// Whether the scene's gradient takes the place of proofs.
+    pub(super) trusts_gradient: bool,
     /// The parameter of the ray at which `s` is zero.
     pub(super) start: f64,
     /// Within this range of the ray it is enough to know that there is a crossing.
@@ -24,7 +26,7 @@ pub(super) struct Search<'a> {
     pub(super) shortest: f64,
     /// Whether rates are known on segments only, and have been on all that were asked for.
     pub(super) has_segments: bool,
-    /// At least the largest change of the function per unit of `s`, if it has no bounds and the scene's gradient is trusted.
+    /// At least the largest change of the function per unit of `s`, if the scene's gradient is trusted.
     pub(super) slope: f64,
     /// Bounds of the derivative along the ray in the cell that is searched, if they are known. Whatever they exclude the search would exclude
     /// by itself, so it does not matter when they become known.
@@ -58,7 +60,7 @@ impl Search<'_> {
     /// Reports the changes of sign between two parameters to the visitor, ascending.
     ///
     /// Every change of sign between the ends is found, and every further pair of changes that is further apart than the
-    /// shortest part, unless the function has no bounds and is steeper than the scene says.
+    /// shortest part, unless the scene's gradient is trusted and the function is steeper.
     ///
     /// Bounds of the value and of its derivative in between are `known` if they have been asked for before.
     pub(super) fn run(
@@ -124,10 +126,10 @@ impl Search<'_> {
         Aabb::new(a.min(b), a.max(b))
     }
 
-    /// Whether there is no change of sign between two places with values of one sign: certainly if the function has bounds, else if the
-    /// scene's gradient is right.
+    /// Whether there is no change of sign between two places with values of one sign: certainly, or if the scene's gradient is right and
+    /// trusted.
     fn excludes(&mut self, from: Place, to: Place, is_short: bool) -> bool {
-        if self.surface.is_bounded() {
+        if !self.trusts_gradient {
             let cell = self.around(from.s, to.s);
             return !is_short && side(self.surface.bounds_within(self.workspace, &cell)).is_some();
         }

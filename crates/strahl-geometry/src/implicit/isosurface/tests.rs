@@ -83,6 +83,21 @@ crate::primitive_tests!(in_a_sphere, || iso(
 ));
 crate::primitive_tests!(noisy, || iso(bumpy(), cube(1.1), 0.0));
 crate::primitive_tests!(sum_over_octaves, || iso(octaves(), cube(1.0), 0.8));
+crate::primitive_tests!(stated_gradient, || sum_with_gradient(Some(5.0)));
+
+/// A sum over octaves with a stated gradient.
+fn sum_with_gradient(max_gradient: Option<f64>) -> Isosurface {
+    let options = IsosurfaceOptions {
+        threshold: 0.8,
+        max_gradient,
+        ..IsosurfaceOptions::default()
+    };
+    Isosurface::try_new(octaves(), cube(1.0), options).unwrap()
+}
+
+fn trusts_gradient(surface: &Isosurface) -> bool {
+    with_workspace(|workspace| surface.trusts_gradient(workspace))
+}
 
 fn hits(surface: &Isosurface, origin: DVec3, direction: DVec3) -> Vec<(f64, u32)> {
     let mut out = Crossings::default();
@@ -239,7 +254,7 @@ fn without_bounds_the_gradient_is_trusted() {
     let waves = function(|g, xyz| g.field(&field, &xyz));
     assert!(!waves.is_bounded());
     let options = IsosurfaceOptions {
-        max_gradient: 7.0,
+        max_gradient: Some(7.0),
         ..IsosurfaceOptions::default()
     };
     let surface = Isosurface::try_new(waves, cube(1.0), options).unwrap();
@@ -257,6 +272,44 @@ fn without_bounds_the_gradient_is_trusted() {
             .all(|(a, b)| (a - b).abs() < 1e-12),
         "{found:?}"
     );
+}
+
+#[test]
+fn a_stated_gradient_is_trusted_for_sums_unless_slopes_contradict_it() {
+    let trusted = |gradient| trusts_gradient(&sum_with_gradient(gradient));
+    assert!(!trusted(None));
+    assert!(trusted(Some(3.5)) && trusted(Some(5.0)));
+    assert!(!trusted(Some(0.5)) && !trusted(Some(50.0)));
+    let of = |function, gradient| {
+        let options = IsosurfaceOptions {
+            max_gradient: Some(gradient),
+            ..IsosurfaceOptions::default()
+        };
+        trusts_gradient(&Isosurface::try_new(function, cube(1.0), options).unwrap())
+    };
+    // These have bounds that cost little.
+    assert!(!of(ball(), 2.0) && !of(bumpy(), 3.0));
+}
+
+#[test]
+fn what_is_found_by_a_stated_gradient_is_what_is_proven() {
+    let (proven, stated) = (sum_with_gradient(None), sum_with_gradient(Some(5.0)));
+    let mut random = Random::new(8);
+    let (mut found, mut others) = (0, 0);
+    for _ in 0..1500 {
+        let (from, to) = (random.cube() * 4.0, random.cube());
+        let (a, b) = (
+            hits(&proven, from, to - from),
+            hits(&stated, from, to - from),
+        );
+        found += a.len();
+        let same = a.len() == b.len()
+            && a.iter()
+                .zip(&b)
+                .all(|(a, b)| a.1 == b.1 && (a.0 - b.0).abs() < 1e-12);
+        others += u32::from(!same);
+    }
+    assert!(found > 1000 && others <= 2, "{found} {others}");
 }
 
 #[test]
@@ -282,7 +335,7 @@ fn wrong_parameters_are_refused() {
     let make = |accuracy, max_gradient, threshold| {
         let options = IsosurfaceOptions {
             accuracy,
-            max_gradient,
+            max_gradient: Some(max_gradient),
             threshold,
             open: false,
         };

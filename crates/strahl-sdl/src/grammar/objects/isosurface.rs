@@ -10,7 +10,7 @@ use strahl_geometry::{Container, Cuboid, Isosurface, IsosurfaceOptions, Sphere};
 /// `isosurface { function { ... } [contained_by { ... }] [threshold t] [accuracy a] [max_gradient g] [evaluate ...] [open] ... }`
 ///
 /// Items that control only POV-Ray's search are read and ignored: `max_trace`, `all_intersections`, and the gradient, unless the
-/// function calls patterns.
+/// function calls patterns or sums over octaves of noise.
 pub(super) fn isosurface(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let function = p.function_item()?;
@@ -34,7 +34,7 @@ pub(super) fn isosurface(p: &mut Parser<'_>) -> PResult<Entity> {
                 }
                 Word::MaxGradient => {
                     p.take(token)?;
-                    options.max_gradient = p.float()?;
+                    options.max_gradient = Some(p.float()?);
                 }
                 Word::Evaluate => {
                     p.take(token)?;
@@ -44,7 +44,7 @@ pub(super) fn isosurface(p: &mut Parser<'_>) -> PResult<Entity> {
                     let factor = p.float()?;
                     p.comma()?;
                     p.float()?;
-                    options.max_gradient = least * factor;
+                    options.max_gradient = Some(least * factor);
                 }
                 Word::MaxTrace => {
                     p.take(token)?;
