@@ -176,6 +176,8 @@ mod tests {
     #[test]
     fn clocks_are_spread_over_the_frames() {
         assert_eq!(clocks("--final-frame 3"), [(1, 0.0), (2, 0.5), (3, 1.0)]);
+        let negative = clocks("--final-frame 2 --initial-clock -.5 --final-clock -2.5e-1");
+        assert_eq!(negative, [(1, -0.5), (2, -0.25)]);
         let cyclic = clocks("--final-frame 4 --cyclic");
         assert_eq!(cyclic, [(1, 0.0), (2, 0.25), (3, 0.5), (4, 0.75)]);
         let part = "--initial-frame 5 --final-frame 13 --subset-start-frame 7 --subset-end-frame 9 \

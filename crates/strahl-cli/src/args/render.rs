@@ -51,7 +51,7 @@ pub(crate) struct RenderArgs {
     /// Quality of JPEG pictures, from 1 (smallest) to 100
     #[arg(long, value_name = "N", default_value_t = 85, value_parser = clap::value_parser!(u8).range(1..=100))]
     pub(crate) jpeg_quality: u8,
-    /// Write an alpha channel, with a transparent background (PNG, EXR)
+    /// Write an alpha channel, with a transparent background (PNG, TGA, EXR)
     #[arg(long)]
     pub(crate) alpha: bool,
     /// Also write depth, normal, position, object, material, tree depth and tests of each pixel (EXR)

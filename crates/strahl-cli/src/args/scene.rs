@@ -35,7 +35,7 @@ pub(crate) struct PovArgs {
     #[arg(long, value_name = "NAME=VALUE", value_parser = parse_declaration)]
     pub(crate) declare: Vec<(String, f64)>,
     /// The value of `clock` [default: 0]
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub(crate) clock: Option<f64>,
     /// Let the scene write files into this folder instead of SCENE.out; only `render` writes files of scenes
     #[arg(long, value_name = "DIR")]
@@ -68,7 +68,7 @@ pub(crate) struct AnimationArgs {
         long,
         value_name = "T",
         default_value_t = 0.0,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pub(crate) initial_clock: f64,
     /// The clock of the last frame
@@ -76,7 +76,7 @@ pub(crate) struct AnimationArgs {
         long,
         value_name = "T",
         default_value_t = 1.0,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pub(crate) final_clock: f64,
     /// Make a loop: the final clock belongs to the frame after the last one, which would look like the first

@@ -300,6 +300,7 @@ mod tests {
         is("a.pov +FP", "--output a.ppm a.pov");
         is("a.pov +UA", "--alpha a.pov");
         is("a.pov +UA +FJ", "--output a.jpg a.pov");
+        is("a.pov +UA +FT", "--output a.tga --alpha a.pov");
         is("a.pov -F", "--no-output a.pov");
         is(
             "a.pov +MV3.5 +K0.25",
@@ -361,6 +362,11 @@ mod tests {
         is("a.pov +W16/2 +H12abc", "--size 16x12 a.pov");
         is("a.pov Version=350", "--language-version 3.7 a.pov");
         is("a.pov Declare=X=2/3", "--declare X=2 a.pov");
+        is(
+            "a.pov Declare=X=2 Declare=Y=3 Declare=X=5",
+            "--declare X=2 --declare Y=3 a.pov",
+        );
+        is("a.pov +K-.5", "--clock -.5 a.pov");
         is("a.pov Declare=X=red", "--declare X=red a.pov");
         is("a.pov Output_File_Type=N16", "--output a.png a.pov");
         is("a.pov Output_File_Type=PNG", "--output a.ppm a.pov");

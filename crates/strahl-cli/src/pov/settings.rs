@@ -167,7 +167,7 @@ impl Settings {
             "Library_Path" => self.library.push(file_name(value)?),
             "Declare" => {
                 let declaration = self.declaration(value)?;
-                self.declare.push(declaration);
+                self.add_declaration(declaration);
             }
             "Version" => self.version = Some(self.language_version(value)?),
             "Continue_Trace" => self.resume = is_on(value),
@@ -223,6 +223,25 @@ impl Settings {
                 Ok(format!("{}={number}", name.trim()))
             }
             _ => Err(format!("expected NAME=NUMBER, found `{value}`")),
+        }
+    }
+
+    /// Adds NAME=NUMBER. Of several with one name the first counts, as in POV-Ray (measured).
+    fn add_declaration(&mut self, declaration: String) {
+        let name = |text: &str| text.split_once('=').map(|(name, _)| name.to_owned());
+        let first = self
+            .declare
+            .iter()
+            .find(|known| name(known) == name(&declaration));
+        match first {
+            None => self.declare.push(declaration),
+            Some(first) if *first == declaration => {}
+            Some(first) => {
+                let note = format!(
+                    "Declare: {declaration} is ignored, because {first} stands before it; the first one counts, as in POV-Ray"
+                );
+                self.note(&note);
+            }
         }
     }
 
@@ -364,7 +383,7 @@ impl Settings {
                 add("--picture-format", ending.to_owned());
             }
         }
-        let has_alpha = matches!(self.file_type, None | Some('N' | 'E' | 'S'));
+        let has_alpha = matches!(self.file_type, None | Some('N' | 'E' | 'S' | 'T' | 'C'));
         if self.alpha && !has_alpha {
             self.note("pictures of this type are written without an alpha channel");
         }

@@ -65,7 +65,7 @@ const FORMATS: &[FormatInfo] = {
         FormatInfo { format: Ppm, extensions: &["ppm", "pnm"], name: "PPM", description: "8 or 16 bit sRGB, uncompressed", layers: false, alpha: false, grayscale: true, regions: false, max_side: I32_MAX, encode: ppm::encode },
         FormatInfo { format: Jpeg, extensions: &["jpg", "jpeg"], name: "JPEG", description: "8 bit sRGB, small, lossy", layers: false, alpha: false, grayscale: false, regions: false, max_side: U16_MAX, encode: jpeg::encode },
         FormatInfo { format: Bmp, extensions: &["bmp"], name: "BMP", description: "8 bit sRGB, uncompressed", layers: false, alpha: false, grayscale: false, regions: false, max_side: U16_MAX, encode: bmp::encode },
-        FormatInfo { format: Tga, extensions: &["tga"], name: "TGA", description: "8 bit sRGB, uncompressed", layers: false, alpha: false, grayscale: false, regions: false, max_side: U16_MAX, encode: tga::encode },
+        FormatInfo { format: Tga, extensions: &["tga"], name: "TGA", description: "8 bit sRGB, uncompressed", layers: false, alpha: true, grayscale: false, regions: false, max_side: U16_MAX, encode: tga::encode },
     ]
 };
 

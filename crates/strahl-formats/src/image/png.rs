@@ -108,7 +108,12 @@ pub(super) fn push_samples(samples: &[f32], depth: BitDepth, codes: &mut Vec<u8>
 }
 
 /// Appends the codes of pixels with alpha. In PNG, colours are straight: not multiplied by alpha.
-fn push_straight(pixels: &[[f32; 3]], alpha: &[f32], options: &WriteOptions, codes: &mut Vec<u8>) {
+pub(super) fn push_straight(
+    pixels: &[[f32; 3]],
+    alpha: &[f32],
+    options: &WriteOptions,
+    codes: &mut Vec<u8>,
+) {
     for (pixel, alpha) in pixels.iter().zip(alpha) {
         let straight = pixel.map(|x| if *alpha > 0.0 { x / alpha } else { 0.0 });
         push_codes(&[straight], options, codes);

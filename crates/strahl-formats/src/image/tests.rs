@@ -651,6 +651,17 @@ fn textures_of_the_other_formats() {
 }
 
 #[test]
+fn tga_stores_straight_colours_with_alpha() {
+    let (rgb, alpha) = ([[0.5, 0.25, 0.0], [0.0; 3]], [0.5, 0.0]);
+    let mut picture = Picture::new(2, 1, &rgb);
+    picture.alpha = Some(&alpha);
+    let bytes = encoded(ImageFormat::Tga, &picture, &WriteOptions::default());
+    let texture = decode_texture(&bytes, "a.tga", TextureUse::Data).unwrap();
+    let codes = |x| texture.fetch(x, 0).map(|code| (code * 255.0).round() as u8);
+    assert_eq!((codes(0), codes(1)), ([255, 188, 0, 128], [0, 0, 0, 0]));
+}
+
+#[test]
 fn damaged_textures_are_errors() {
     let rgb = colors(20, 9);
     // A truncated JPEG is still a picture.

@@ -112,6 +112,8 @@ impl<'s> TreeTracer<'s> {
     }
 
     /// Queues the transparency ray of a passage, or the rays of the parts of its spectrum.
+    ///
+    /// As in POV-Ray (measured) neither fading nor the share of a part of the spectrum counts for the weight.
     #[inline(always)]
     fn queue_passage<O: TraceObserver>(
         &mut self,
@@ -131,7 +133,6 @@ impl<'s> TreeTracer<'s> {
         };
         let parts = self.parts_behind(branch, surface);
         if parts == 0 {
-            // As in POV-Ray (measured) fading does not count for the weight.
             let whole = Offshoot {
                 coefficient: passage.weight,
                 ..Offshoot::new(RayKind::Refraction, through, direction, branch.part)
@@ -144,7 +145,7 @@ impl<'s> TreeTracer<'s> {
             let offshoot = Offshoot {
                 divided: true,
                 returned: bent.is_none(),
-                coefficient: passage.weight * part.share().max_component(),
+                coefficient: passage.weight,
                 ..Offshoot::new(RayKind::Refraction, through, direction, part)
             };
             self.queue(point, &offshoot, observer);

@@ -26,12 +26,18 @@ impl Parser<'_> {
         self.end_of_assignment()
     }
 
-    /// The semicolon is required, but the meaning is clear without it. If the value came from a macro, the macro ends before it.
+    /// The semicolon is required, but the meaning is clear without it. If the value came from a macro, the macro ends before it. A second one
+    /// is taken too, as in POV-Ray (measured): macros whose value ends with one leave it.
     fn end_of_assignment(&mut self) -> PResult<()> {
-        if !self.at_floor() {
-            self.value_ends()?;
+        for _ in 0..2 {
+            if !self.at_floor() {
+                self.value_ends()?;
+            }
+            if !self.raw_accept(Kind::Semicolon)? {
+                break;
+            }
         }
-        self.raw_accept(Kind::Semicolon).map(|_| ())
+        Ok(())
     }
 
     /// `deprecated [once] "text"`: a notice for users of the name, which is read but not shown.

@@ -169,6 +169,20 @@ fn curvature(knots: &[(f64, Vector)]) -> Vec<[f64; 5]> {
     second
 }
 
+/// Whether a value is a spline or an array of such, as its first element tells.
+fn holds_splines(value: &Value) -> bool {
+    match value {
+        Value::Spline(_) => true,
+        Value::Array(array) => array
+            .elements()
+            .iter()
+            .flatten()
+            .next()
+            .is_some_and(holds_splines),
+        _ => false,
+    }
+}
+
 fn kind_of(word: Option<Word>) -> Option<SplineKind> {
     Some(match word? {
         Word::LinearSpline => SplineKind::Linear,
@@ -186,13 +200,7 @@ impl Parser<'_> {
         let mut points = vec![];
         let place = self.place();
         self.braces(|p| {
-            let token = p.peek()?;
-            let named = match token.symbol().and_then(|s| p.scopes.find(s)) {
-                Some(Value::Spline(spline)) => Some(Arc::clone(spline)),
-                _ => None,
-            };
-            if let Some(named) = named {
-                p.take(token)?;
+            if let Some(named) = p.named_spline()? {
                 kind = named.kind;
                 points.extend(named.knots.iter().copied());
                 p.comma()?;
@@ -216,6 +224,23 @@ impl Parser<'_> {
             return Err(self.fail(place, "the parameter of a point is not a finite number"));
         }
         Ok(Value::Spline(Arc::new(Spline::new(kind, points))))
+    }
+
+    /// The spline of a name or of an element of an array, if one follows.
+    fn named_spline(&mut self) -> PResult<Option<Arc<Spline>>> {
+        let token = self.peek()?;
+        let value = token.symbol().and_then(|s| self.scopes.find(s));
+        if !value.is_some_and(holds_splines) {
+            return Ok(None);
+        }
+        let place = self.place_of(token);
+        match self.variable(token)? {
+            Value::Spline(spline) => Ok(Some(spline)),
+            other => {
+                let message = format!("expected a spline, found {}", other.describe());
+                Err(self.fail(place, message))
+            }
+        }
     }
 
     /// `(t)` or `(t, kind)` after the name of a spline.

@@ -195,6 +195,20 @@ impl Parser<'_> {
 pub(super) fn leading_number(text: &str) -> f64 {
     let text = text.trim_start();
     let unsigned = text.strip_prefix(['-', '+']).unwrap_or(text);
+    let signed = |size: f64| if text.starts_with('-') { -size } else { size };
+    let begins = |word: &str| {
+        let start = unsigned.get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    };
+    if begins("0x") {
+        return signed(leading_hexadecimal(&unsigned[2..]));
+    }
+    if begins("inf") {
+        return signed(f64::INFINITY);
+    }
+    if begins("nan") {
+        return f64::NAN;
+    }
     let sign = text.len() - unsigned.len();
     let digits = unsigned.bytes().take_while(|b| b.is_ascii_digit()).count();
     let mut end = digits;
@@ -211,6 +225,25 @@ pub(super) fn leading_number(text: &str) -> f64 {
         }
     }
     text[..sign + end].parse().unwrap_or(0.0)
+}
+
+/// The same for digits to the base of 16, with an exponent to the base of 2 behind a `p`.
+fn leading_hexadecimal(text: &str) -> f64 {
+    let (mut value, mut places, mut is_fraction) = (0.0, 0, false);
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        match first.to_digit(16) {
+            Some(digit) => {
+                value = value * 16.0 + f64::from(digit);
+                places += i32::from(is_fraction);
+            }
+            None if first == '.' && !is_fraction => is_fraction = true,
+            None => break,
+        }
+        rest = &rest[first.len_utf8()..];
+    }
+    let exponent = rest.strip_prefix(['p', 'P']).map_or(0.0, leading_number);
+    value * 2f64.powi(exponent.clamp(-5000.0, 5000.0) as i32 - 4 * places)
 }
 
 const DAYS: [&str; 7] = [
@@ -333,6 +366,12 @@ mod tests {
             ("", 0.0),
             (".5", 0.5),
             ("5.", 5.0),
+            ("0x1F", 31.0),
+            ("-0X10", -16.0),
+            ("0x1p4", 16.0),
+            ("0x.8z", 0.5),
+            ("0x", 0.0),
+            ("-Infinity", f64::NEG_INFINITY),
         ] {
             assert_eq!(leading_number(text), expected, "{text}");
         }

@@ -4,6 +4,7 @@ use strahl_math::noise::{NoiseGenerator, lattice_hash, noise};
 use strahl_math::{DVec3, det};
 use strahl_simd::{Isa, Simd, dispatch};
 
+use super::blocks;
 use super::random::{numbers, uniform};
 
 /// The cell of the unit lattice around `p`.
@@ -13,7 +14,7 @@ fn cell(p: DVec3) -> [i64; 3] {
 
 /// A random number per unit cube.
 pub(super) fn cells(p: DVec3) -> f64 {
-    uniform(lattice_hash(cell(p)))
+    uniform(lattice_hash(cell(p + blocks::BORDER)))
 }
 
 /// How crackle measures distance.

@@ -44,3 +44,30 @@ pub(super) fn built() -> Vec<Built> {
         ),
     ]
 }
+
+/// Of POV-Ray 3.7.0.10: `function { pattern { checker } }` and so on, a little in front of the borders and behind them.
+#[test]
+fn borders_belong_to_the_block_behind_them() {
+    let value = |pattern: &Pattern, p: [f64; 3]| {
+        let place = DVec3::from_array(p);
+        PatternField::from(pattern.clone()).value(&TexturePoint::in_space(place))
+    };
+    let brick = Pattern::Brick {
+        size: DVec3::new(8.0, 3.0, 4.5),
+        mortar: 0.5,
+    };
+    for (off, behind) in [(-1.1e-10, false), (-0.9e-10, true), (0.0, true)] {
+        let (block, shade) = if behind { (1.0, 5.525) } else { (0.0, 0.892) };
+        let checker = |p: [f64; 3]| value(&Pattern::Checker, p);
+        assert_eq!(checker([3.0 + off, 0.5, 0.5]), block);
+        assert_eq!(checker([0.5, 3.0 + off, 0.5]), block);
+        assert_eq!(checker([-3.0 + off, 0.5, 0.5]), block);
+        assert_eq!(checker([off, 0.5, 0.5]), 1.0 - block);
+        let cell = 9.0 * value(&Pattern::Cells, [3.0 + off, 0.5, 0.5]);
+        assert!((cell - shade).abs() < 6e-4, "{cell}");
+        // The mortar ends each brick.
+        assert_eq!(value(&brick, [1.0, 3.0 + off, 1.0]), block);
+        assert_eq!(value(&brick, [1.0, 2.5 + off, 1.0]), 1.0 - block);
+        assert_eq!(value(&brick, [3.5 + off, 4.0, 1.0]), 1.0 - block);
+    }
+}
