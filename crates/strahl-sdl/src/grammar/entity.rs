@@ -3,7 +3,7 @@ use super::objects::{Shared, Tally};
 use super::query::Query;
 use std::sync::atomic::AtomicU32;
 use std::sync::{Arc, OnceLock};
-use strahl_math::Transform;
+use strahl_math::{Aabb, Transform};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
 /// An object being read: the scene's object with additional data.
@@ -78,7 +78,9 @@ pub struct Declared {
     pub(crate) uses: AtomicU32,
     /// Its number among the objects whose uses share one group.
     pub(crate) shared: OnceLock<u32>,
-    /// Answers `inside`, `trace` and the extents; built on first use.
+    /// The box around it, once it has been asked for.
+    pub(crate) extent: OnceLock<Aabb>,
+    /// Answers `inside` and `trace`; built on first use.
     pub(crate) query: OnceLock<Option<Arc<Query>>>,
 }
 
@@ -90,6 +92,7 @@ impl Declared {
             entity,
             uses: AtomicU32::new(0),
             shared: OnceLock::new(),
+            extent: OnceLock::new(),
             query: OnceLock::new(),
         }
     }

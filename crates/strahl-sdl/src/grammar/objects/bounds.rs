@@ -5,19 +5,11 @@
 //! quickly, such as spheres and meshes, have no bounds. An intersection is seen only through the boxes of its bounded parts, a
 //! difference through that of its first part.
 
+use super::extents::{extent, is_smaller, moved, own_extent};
 use super::reuse::Shared;
 use strahl_geometry::{Cuboid, Primitive, Shape};
 use strahl_math::{Aabb, DVec3, Transform};
 use strahl_scene::{CsgOp, Object, ObjectKind};
-
-/// POV-Ray's boxes around flat objects are this thick.
-const THICKNESS: f64 = 0.002;
-
-/// POV-Ray's boxes around unbounded objects are this wide.
-const WIDEST: f64 = 2e10;
-
-/// A box counts as smaller than another if its volume is smaller by this factor: boxes of ours are padded for rounding.
-const SMALLER: f64 = 1.0 - 1e-9;
 
 /// How bounds act on an object.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -45,8 +37,8 @@ pub(super) fn deciding(object: &Object, given: Vec<Object>, shared: &Shared) -> 
             if is_bound(object) {
                 around = around.intersection(&extent(object, shared));
             }
-            let smaller = volume(&around) < SMALLER * volume(&own);
-            let bounds = smaller.then(|| Object::from(Cuboid::new(around.min, around.max)));
+            let bounds = is_smaller(&around, &own)
+                .then(|| Object::from(Cuboid::new(around.min, around.max)));
             bounds.into_iter().collect()
         }
     }
@@ -72,12 +64,6 @@ pub(super) fn narrowed(op: CsgOp, parts: &[Object], shared: &Shared) -> Option<O
 fn is_bound(object: &Object) -> bool {
     let op = CsgOp::Bound;
     matches!(&object.kind, ObjectKind::Csg { op: found, .. } if *found == op)
-}
-
-fn volume(bounds: &Aabb) -> f64 {
-    let size = bounds.size();
-    let side = |length: f64| length.clamp(THICKNESS, WIDEST);
-    side(size.x) * side(size.y) * side(size.z)
 }
 
 /// How bounds act on objects of this kind.
@@ -129,7 +115,7 @@ fn is_mesh(kind: &ObjectKind) -> bool {
     )
 }
 
-/// The box around an object without its bounds.
+/// The box around an object without its bounds, in its parent's space.
 fn unbounded_extent(object: &Object, shared: &Shared) -> Aabb {
     let (mut inner, mut maps) = (object, vec![object.transform.as_deref()]);
     while let ObjectKind::Csg {
@@ -145,59 +131,6 @@ fn unbounded_extent(object: &Object, shared: &Shared) -> Aabb {
     outwards.fold(own_extent(&inner.kind, shared), |bounds, map| {
         moved(map, bounds)
     })
-}
-
-/// The box around an object in its parent's space, which cuts don't change.
-fn extent(object: &Object, shared: &Shared) -> Aabb {
-    moved(
-        object.transform.as_deref(),
-        own_extent(&object.kind, shared),
-    )
-}
-
-fn moved(map: Option<&Transform>, bounds: Aabb) -> Aabb {
-    map.map_or(bounds, |map| map.bounds_to_world(&bounds))
-}
-
-/// The same in the object's own space. Walked with a list, since trees may be deeper than the stack.
-pub(super) fn own_extent(kind: &ObjectKind, shared: &Shared) -> Aabb {
-    enum Step<'a> {
-        Visit(Option<&'a Transform>, &'a ObjectKind),
-        Build(Option<&'a Transform>, CsgOp, usize),
-    }
-    let mut steps = vec![Step::Visit(None, kind)];
-    let mut done: Vec<Aabb> = vec![];
-    while let Some(step) = steps.pop() {
-        let (map, bounds) = match step {
-            Step::Visit(map, ObjectKind::Csg { op, children }) => {
-                let parts: Vec<&Object> = match op {
-                    CsgOp::Clip | CsgOp::Difference => children.0.iter().take(1).collect(),
-                    CsgOp::Bound => children.0.iter().skip(1).collect(),
-                    _ => children.0.iter().collect(),
-                };
-                steps.push(Step::Build(map, *op, parts.len()));
-                for part in parts {
-                    steps.push(Step::Visit(part.transform.as_deref(), &part.kind));
-                }
-                continue;
-            }
-            Step::Visit(map, ObjectKind::Instance(id)) => (map, shared.extent(*id)),
-            Step::Visit(map, ObjectKind::Shape(shape)) => (map, shape.bounds()),
-            Step::Visit(map, ObjectKind::Light(_)) => (map, Aabb::EMPTY),
-            Step::Build(map, op, count) => {
-                let parts = done.split_off(done.len() - count).into_iter();
-                let common = |a: Aabb, b: Aabb| a.intersection(&b);
-                let bounds = match op {
-                    CsgOp::Inverse => Aabb::EVERYTHING,
-                    CsgOp::Intersection | CsgOp::Bound => parts.fold(Aabb::EVERYTHING, common),
-                    _ => parts.fold(Aabb::EMPTY, |a, b| a.union(&b)),
-                };
-                (map, bounds)
-            }
-        };
-        done.push(moved(map, bounds));
-    }
-    done.pop().unwrap_or(Aabb::EMPTY)
 }
 
 /// Whether a bound certainly contains a box.

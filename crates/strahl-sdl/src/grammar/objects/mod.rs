@@ -11,6 +11,7 @@ mod cone;
 mod csg;
 mod cylinder;
 mod disc;
+mod extents;
 mod height_field;
 mod isosurface;
 mod julia_fractal;
@@ -40,6 +41,7 @@ mod text;
 mod torus;
 mod triangle;
 
+pub(super) use extents::told_extent;
 pub(super) use isosurface::KnownIsosurfaces;
 pub(super) use named::object;
 pub(crate) use reuse::{Shared, Tally, expanded};

@@ -8,7 +8,7 @@
 //! more than a larger group, most of all where they overlap. Operations other than unions need all their parts: within them the last use of a declared object takes its parts,
 //! and earlier uses copy them.
 
-use super::bounds::own_extent;
+use super::extents::own_extent;
 use crate::grammar::Entity;
 use crate::grammar::entity::{Declared, has_no_surface};
 use crate::grammar::texture::is_bare;

@@ -4,7 +4,7 @@ mod mesh;
 
 use super::Thing;
 use super::entity::Declared;
-use super::objects::expanded;
+use super::objects::{expanded, told_extent};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
 use crate::symbol::Symbol;
@@ -14,14 +14,13 @@ use mesh::SearchableMesh;
 use std::sync::Arc;
 use strahl_function::{Cost, ScalarField};
 use strahl_geometry::{Csg, CsgNode, Primitive, Scratch, Shape, Solid};
-use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_math::{DVec3, Interval, Ray};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
 /// An object prepared for queries.
 #[derive(Debug)]
 pub(crate) struct Query {
     csg: Csg,
-    bounds: Aabb,
     /// The cost of testing whether a point is inside.
     cost: Cost,
     /// The part of that cost spent in its functions.
@@ -32,11 +31,9 @@ impl Query {
     /// `None` if the object is empty or a shape is invalid.
     pub(super) fn new(object: &Object) -> Option<Self> {
         let csg = Csg::try_new(node(object)?).ok()?;
-        let bounds = unclipped(object).unwrap_or_else(|| csg.bounds());
         let (cost, functions) = cost(object);
         Some(Self {
             csg,
-            bounds,
             cost,
             functions,
         })
@@ -136,39 +133,6 @@ fn cost(object: &Object) -> (Cost, u64) {
     (cost.around(), functions)
 }
 
-/// The bounding box of an object without its clipping and inversion, or of a shape's surface without its inside, because POV-Ray
-/// computes extents from these. Of a bounded object it is that of the bounds.
-fn unclipped(object: &Object) -> Option<Aabb> {
-    let mut maps = vec![];
-    let mut inner = object;
-    while let ObjectKind::Csg {
-        op: op @ (CsgOp::Clip | CsgOp::Bound | CsgOp::Inverse),
-        children,
-    } = &inner.kind
-    {
-        maps.push(inner.transform.as_deref());
-        if *op == CsgOp::Bound {
-            let mut box_of_all = Aabb::EVERYTHING;
-            for bound in children.0.get(1..)? {
-                box_of_all = box_of_all.intersection(&Csg::try_new(node(bound)?).ok()?.bounds());
-            }
-            let outwards = maps.into_iter().rev().flatten();
-            return Some(outwards.fold(box_of_all, |b, map| map.bounds_to_world(&b)));
-        }
-        inner = children.0.first()?;
-    }
-    let bounds = match &inner.kind {
-        ObjectKind::Shape(shape) => {
-            maps.push(inner.transform.as_deref());
-            shape.bounds()
-        }
-        _ if maps.is_empty() => return None,
-        _ => Csg::try_new(node(inner)?).ok()?.bounds(),
-    };
-    let outwards = maps.into_iter().rev().flatten();
-    Some(outwards.fold(bounds, |bounds, map| map.bounds_to_world(&bounds)))
-}
-
 impl Parser<'_> {
     /// `inside(Object, point)`, from after its opening parenthesis.
     pub(crate) fn ask_inside(&mut self) -> PResult<bool> {
@@ -184,13 +148,14 @@ impl Parser<'_> {
     pub(crate) fn ask_extent(&mut self, word: Word) -> PResult<DVec3> {
         const FAR: DVec3 = DVec3::splat(1e10);
         let object = self.object_argument()?;
-        let corner = self.query(&object)?.map_or(DVec3::ZERO, |q| {
-            if word == Word::MinExtent {
-                q.bounds.min
-            } else {
-                q.bounds.max
-            }
-        });
+        let bounds = object
+            .extent
+            .get_or_init(|| told_extent(&object.entity.object, &self.state.shared));
+        let corner = match word {
+            _ if bounds.is_empty() => DVec3::ZERO,
+            Word::MinExtent => bounds.min,
+            _ => bounds.max,
+        };
         // Adding 0 turns -0 into 0.
         Ok(corner.clamp(-FAR, FAR) + DVec3::ZERO)
     }
