@@ -272,8 +272,9 @@ class Pattern(Movable):
         falloff: float = 2.0,
         inverse: bool = False,
         repeat: Vector = (0, 0, 0),
+        turbulence: Vector = (0, 0, 0),
     ) -> Pattern:
-        """Drawn towards a place from within a radius, or pushed away; ``repeat`` has the edges of blocks that have a hole each, or 0."""
+        """Drawn towards a place from within a radius, or pushed away; ``repeat`` has the edges of blocks that have a hole each, or 0, and by ``turbulence`` the holes are moved within their blocks at random."""
         core = self._core.drawn_in(
             vector(center, "center"),
             positive(radius, "radius"),
@@ -281,6 +282,7 @@ class Pattern(Movable):
             number(falloff, "falloff"),
             bool(inverse),
             vector(repeat, "repeat"),
+            vector(turbulence, "turbulence"),
         )
         return self._of(core, self._name)
 
@@ -290,13 +292,13 @@ class Pattern(Movable):
 
     def wrap(
         self,
-        around: Literal["cylindrical", "spherical", "toroidal"],
+        around: Literal["cylindrical", "spherical", "toroidal", "cubic"],
         *,
         orientation: Vector = (0, 0, 1),
         distance_exponent: float = 0.0,
         radius: float = 1.0,
     ) -> Pattern:
-        """The plane of x and y around the y axis, the origin, or a circle of ``radius``. The pattern is stretched by the distance to the power ``distance_exponent``."""
+        """The plane of x and y around the y axis, the origin, a circle of ``radius``, or a cube. The pattern is stretched by the distance to the power ``distance_exponent``; cubes have neither that nor an orientation."""
         core = self._core.wrapped(around, _unit(orientation), number(distance_exponent, "distance_exponent"), number(radius, "radius"))
         return self._of(core, self._name)
 

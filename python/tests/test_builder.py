@@ -73,6 +73,9 @@ PATTERNS: dict[str, Pattern] = {
     "bozo poly_wave 2 scale 0.4": Pattern("bozo").wave("poly", 2).scale(0.4),
     "bozo ramp_wave frequency 2": Pattern("bozo").wave("ramp").frequency(2),
     "gradient y warp { repeat 0.5 * x offset <0, 0.3, 0> flip y }": Pattern.gradient((0, 1, 0)).repeat("x", 0.5, offset=(0, 0.3, 0), flip=(False, True, False)),
+    "bozo warp { black_hole <0.5, 0.6, 0.7>, 0.45 repeat <1, 2, 3> turbulence <0.3, 0.2, 0.4> }":
+        Pattern("bozo").black_hole((0.5, 0.6, 0.7), 0.45, repeat=(1, 2, 3), turbulence=(0.3, 0.2, 0.4)),
+    "bozo warp { cubic }": Pattern("bozo").wrap("cubic"),
     "gradient y warp { black_hole <0, 0.3, -1>, 0.7 strength 1.5 falloff 1.2 inverse }":
         Pattern.gradient((0, 1, 0)).black_hole((0, 0.3, -1), 0.7, strength=1.5, falloff=1.2, inverse=True),
     "gradient y warp { turbulence 0.5 octaves 3 } scale 0.5": Pattern.gradient((0, 1, 0)).stir(0.5, octaves=3).scale(0.5),
@@ -539,7 +542,7 @@ SAME: dict[tuple[str, str], dict[str, Any]] = {
         "Solid": Background.solid, "Gradient": Background.gradient, "Sky": Background.sky,
     },
     ("crates/strahl-shade/src/patterns/warp.rs", "pub enum Warp {\n"): {
-        "Transform": Pattern.transform, "Repeat": Pattern.repeat, "BlackHole": Pattern.black_hole, "Turbulence": Pattern.stir, "Mapping": Pattern.wrap, "Planar": Pattern.flatten,
+        "Transform": Pattern.transform, "Repeat": Pattern.repeat, "BlackHole": Pattern.black_hole, "Turbulence": Pattern.stir, "Mapping": Pattern.wrap, "Cubic": Pattern.wrap, "Planar": Pattern.flatten,
     },
     ("crates/strahl-shade/src/texture.rs", "pub enum Texture {\n"): {
         "Plain": Texture, "Layered": Texture.layered, "Map": Texture.map, "Blocks": Texture.blocks, "Average": Texture.average, "MaterialMap": Texture.picture,

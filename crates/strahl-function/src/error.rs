@@ -76,12 +76,4 @@ pub enum FunctionError {
         /// An internal function of a similar name.
         suggestion: Option<&'static str>,
     },
-    /// An internal function whose formula isn't known.
-    #[error("the internal function `{name}` is not supported: {reason}")]
-    UnsupportedInternal {
-        /// The name.
-        name: &'static str,
-        /// Why not.
-        reason: &'static str,
-    },
 }

@@ -86,7 +86,7 @@ fn values_are_those_of_pov_ray() {
         );
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    for f in internal::all().filter(|f| f.is_supported()) {
+    for f in internal::all() {
         let rows = seen.get(f.name).copied().unwrap_or(0);
         assert!(rows >= 8, "{} is measured at {rows} points", f.name);
     }
@@ -210,10 +210,6 @@ fn wrong_names_and_counts_are_reported() {
     );
     let error = at("f_sphere", &[]).unwrap_err();
     assert_eq!(error.to_string(), "f_sphere takes 4 arguments, found 3");
-    for f in internal::all().filter(|f| !f.is_supported()) {
-        let error = at(f.name, &vec![1.0; f.parameters]).unwrap_err();
-        assert!(matches!(error, FunctionError::UnsupportedInternal { .. }));
-    }
 }
 
 #[test]

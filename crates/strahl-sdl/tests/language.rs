@@ -302,6 +302,60 @@ fn numbers_in_files_have_six_digits() {
     );
 }
 
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn components_where_vectors_are_wanted_keep_the_others() {
+    let setup = "#declare S = spline { linear_spline 0, <1, 2, 3> 1, <2, 4, 6> }; #declare V2 = <3, 4>; #declare F = 2;
+        #declare V3 = <1, 2, 3>; #declare A = array[1] { <3, 4, 5> }; #declare C = rgb <0.1, 0.5, 0.9>; #declare W = V3.y;
+        #macro M(Q) Q #end #macro N(Q) Q.y #end";
+    for (scalar, measured) in [
+        ("V3.y", "2 2 3"),
+        ("-V3.y", "-2 2 3"),
+        ("<1, 2, 3>.y", "2 2 3"),
+        ("S(0).y", "2 2 3"),
+        ("A[0].y", "4 4 5"),
+        ("V2.y", "4 4 0"),
+        ("x.x", "1 0 0"),
+        ("C.green*2", "1 0.5 0.9"),
+        ("V3.y*V3.z", "6 2 3"),
+        ("V3.y/2", "1 2 3"),
+        ("V3.y*F", "4 2 3"),
+        ("V3.y - 1", "1 2 3"),
+        ("F*V3.y", "4 4 4"),
+        ("2*V3.y", "4 4 4"),
+        ("(V3.y)", "2 2 2"),
+        ("max(V3.y, 1)", "2 2 2"),
+        ("V3.y + V3", "3 4 5"),
+        ("V3 + V3.y", "3 4 5"),
+        ("S(0).y*x", "2 0 0"),
+        ("W", "2 2 2"),
+        ("M(V3.y)", "2 2 2"),
+        ("N(V3)", "2 2 3"),
+    ] {
+        let setup = format!("{setup} #declare O = sphere {{ 0, 1 translate {scalar} }};");
+        let list = ["min_extent(O).x", "min_extent(O).y", "min_extent(O).z"];
+        let found = values(&setup, &list);
+        let measured = measured
+            .split(' ')
+            .map(|x| x.parse::<f64>().expect("a number"));
+        for (found, measured) in found.iter().zip(measured) {
+            assert!(
+                (found + 1.0 - measured).abs() < 1e-9,
+                "{scalar}: {found} {measured}"
+            );
+        }
+    }
+    let found = values(
+        setup,
+        &["vlength(V3.y)", "vdot(V3.y, <1, 1, 1>)", "W", "V3.y"],
+    );
+    assert_eq!(found, [17f64.sqrt(), 7.0, 2.0, 2.0]);
+    assert_eq!(
+        debug(&format!("{setup} #debug vstr(3, V3.y, \" \", 0, 0)")),
+        "2 2 3"
+    );
+}
+
 /// Of POV-Ray 3.7.0.10, which keeps extents with the digits of f32.
 #[test]
 fn extents_are_those_of_povray() {

@@ -191,7 +191,7 @@ impl ImageMap {
 
     /// Whether a place is outside of a single image.
     fn is_beside(&self, place: DVec2) -> bool {
-        let inside = |x: f64| (0.0..1.0).contains(&x);
+        let inside = |x: f64| (0.0..=1.0).contains(&x);
         let beside = match self.map_type {
             MapType::Planar => !inside(place.x) || !inside(place.y),
             MapType::Cylindrical => !inside(place.y),

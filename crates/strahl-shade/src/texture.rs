@@ -361,7 +361,8 @@ impl Texture {
                 let inner = point.moved(|p| modifiers.moved(p)).of_member();
                 let index = match image.color(inner.position) {
                     None => 0,
-                    Some(color) => (color.rgb.r * 255.0).round() as usize,
+                    // Truncated, as in POV-Ray (measured): numbers between those of texels are of interpolated pictures.
+                    Some(color) => (color.rgb.r * 255.0 + 1e-4) as usize,
                 };
                 if let Some(texture) = textures.get(texture_of(index, textures.len())) {
                     visit(texture, &inner, &modifiers.warps, 1.0);

@@ -59,13 +59,8 @@ pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
             gray: false,
         });
     }
-    let decoder = open_picture(bytes, name)?
-        .into_decoder()
-        .map_err(|error| decode_error(name, error))?;
-    let (width, height) = decoder.dimensions();
-    let texel = u64::from(decoder.color_type().bytes_per_pixel());
-    check_size(name, width.into(), height.into(), texel)?;
-    let picture = DynamicImage::from_decoder(decoder).map_err(|error| decode_error(name, error))?;
+    let picture = decode(bytes, name)?;
+    let (width, height) = (picture.width(), picture.height());
     let (values, gray) = match picture {
         DynamicImage::ImageLuma8(p) => (p.iter().map(|&v| u16::from(v) * 257).collect(), true),
         DynamicImage::ImageLumaA8(p) => (p.pixels().map(|p| u16::from(p[0]) * 257).collect(), true),
@@ -91,6 +86,73 @@ pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
         height,
         values,
         gray,
+    })
+}
+
+fn decode(bytes: &[u8], name: &str) -> Result<DynamicImage, ImageError> {
+    let decoder = open_picture(bytes, name)?
+        .into_decoder()
+        .map_err(|error| decode_error(name, error))?;
+    let (width, height) = decoder.dimensions();
+    let texel = u64::from(decoder.color_type().bytes_per_pixel());
+    check_size(name, width.into(), height.into(), texel)?;
+    DynamicImage::from_decoder(decoder).map_err(|error| decode_error(name, error))
+}
+
+/// The numbers that a picture has instead of colours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TexelNumbers {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width * height` numbers, row by row from the top.
+    pub numbers: Vec<u8>,
+}
+
+/// Reads the numbers of a picture's texels, by which `material_map` selects textures, in the formats of [`decode_heights`].
+///
+/// As in POV-Ray 3.7 (measured) the number is the index in the palette, if there is one, and else red from 0 to 255, truncated; grey of 8 bits
+/// is weighted like a colour first, in numbers of 32 bits, so that 84 of the 256 greys are one less.
+pub fn decode_numbers(bytes: &[u8], name: &str) -> Result<TexelNumbers, ImageError> {
+    if let Some(PaletteIndices {
+        width,
+        height,
+        indices,
+        ..
+    }) = decode_indices(bytes, name)?
+    {
+        return Ok(TexelNumbers {
+            width,
+            height,
+            numbers: indices,
+        });
+    }
+    let picture = decode(bytes, name)?;
+    let weighted = |v: &u8| {
+        let gray = f32::from(*v) / 255.0;
+        ((0.297 * gray + 0.589 * gray + 0.114 * gray) * 255.0) as u8
+    };
+    let reduced = |v: u16| (u32::from(v) * 255 / 65535) as u8;
+    let (width, height) = (picture.width(), picture.height());
+    let numbers = match picture {
+        DynamicImage::ImageLuma8(p) => p.iter().map(weighted).collect(),
+        DynamicImage::ImageLumaA8(p) => p.pixels().map(|p| p[0]).collect(),
+        DynamicImage::ImageLuma16(p) => p.iter().map(|v| reduced(*v)).collect(),
+        DynamicImage::ImageLumaA16(p) => p.pixels().map(|p| reduced(p[0])).collect(),
+        DynamicImage::ImageRgb8(p) => p.pixels().map(|p| p[0]).collect(),
+        DynamicImage::ImageRgba8(p) => p.pixels().map(|p| p[0]).collect(),
+        other => {
+            let picture = other.into_rgb32f();
+            // The cast saturates and turns NaN into 0. A whole code must not become smaller by rounding.
+            let red = |r: f32| (f64::from(r) * 255.0 + 1e-3) as u8;
+            picture.pixels().map(|p| red(p.0[0])).collect()
+        }
+    };
+    Ok(TexelNumbers {
+        width,
+        height,
+        numbers,
     })
 }
 

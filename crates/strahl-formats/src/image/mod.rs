@@ -42,7 +42,9 @@ pub use error::ImageError;
 pub use exr::{ExrFile, ExrHeader, read_exr, read_exr_header};
 pub use format::{FormatInfo, ImageFormat, formats};
 pub use gamma::{PictureCodes, picture_codes};
-pub use heights::{Heights, PaletteIndices, decode_heights, decode_indices};
+pub use heights::{
+    Heights, PaletteIndices, TexelNumbers, decode_heights, decode_indices, decode_numbers,
+};
 pub use picture::{BitDepth, Layer, LayerData, Picture, Window, WriteOptions};
 pub use texture::{MAX_TEXELS, TextureUse, decode_texture, read_texture};
 pub use write::{encode_picture, write_bytes, write_file, write_picture};

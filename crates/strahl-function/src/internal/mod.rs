@@ -1,8 +1,7 @@
 //! The functions of POV-Ray's `functions.inc`, by name.
 //!
 //! POV-Ray's manual documents their names and parameters; what they compute was found by measuring POV-Ray 3.7 at many
-//! points and parameters (`tests/data/internal.txt` has a sample). Where a name is known but its formula is not,
-//! [`Graph::internal`] reports [`FunctionError::UnsupportedInternal`].
+//! points and parameters (`tests/data/internal.txt` has a sample).
 //!
 //! The pattern functions of that file (`f_agate`, `f_wood`, ...) are patterns: a [`ScalarField`](crate::ScalarField) of
 //! the host.
@@ -38,7 +37,6 @@ pub struct Internal {
 enum Formula {
     Terms(for<'a, 'g> fn(Arguments<'a, 'g>) -> Term<'a, 'g>),
     Noise(fractal::Kind),
-    Unsupported(&'static str),
 }
 
 /// What a formula is written in: the point and the parameters, zero where there are fewer.
@@ -50,13 +48,6 @@ struct Arguments<'a, 'g> {
     p: [Term<'a, 'g>; PARAMETERS],
 }
 
-impl Internal {
-    /// Whether the function can be evaluated.
-    pub fn is_supported(&self) -> bool {
-        !matches!(self.formula, Formula::Unsupported(_))
-    }
-}
-
 /// All internal functions.
 pub fn all() -> impl Iterator<Item = &'static Internal> {
     algebraic::TABLE
@@ -65,7 +56,6 @@ pub fn all() -> impl Iterator<Item = &'static Internal> {
         .chain(solids::TABLE)
         .chain(tubes::TABLE)
         .chain(fractal::TABLE)
-        .chain(UNSUPPORTED)
 }
 
 /// The internal function of that name.
@@ -110,10 +100,6 @@ impl Graph {
                 .expr
             }
             Formula::Noise(kind) => fractal::build(self, kind, generator, arguments),
-            Formula::Unsupported(reason) => self.fail(FunctionError::UnsupportedInternal {
-                name: function.name,
-                reason,
-            }),
         }
     }
 }
@@ -146,21 +132,4 @@ fn distance(a: &str, b: &str) -> usize {
         }
     }
     row.last().copied().unwrap_or(0)
-}
-
-macro_rules! unsupported {
-    ($($name:literal, $parameters:literal;)*) => {
-        /// Names whose formulas could not be derived.
-        const UNSUPPORTED: &[Internal] = &[$(
-            Internal {
-                name: $name,
-                parameters: $parameters,
-                formula: Formula::Unsupported("its formula is neither documented nor could it be measured"),
-            },
-        )*];
-    };
-}
-
-unsupported! {
-    "f_helical_torus", 10;
 }

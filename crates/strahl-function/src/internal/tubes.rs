@@ -16,6 +16,11 @@ pub(super) const TABLE: &[Internal] = &[
         formula: Formula::Terms(helix2),
     },
     Internal {
+        name: "f_helical_torus",
+        parameters: 10,
+        formula: Formula::Terms(helical_torus),
+    },
+    Internal {
         name: "f_spiral",
         parameters: 6,
         formula: Formula::Terms(spiral),
@@ -68,6 +73,43 @@ fn helix2<'a, 'g>(
     let turn = period * y;
     let (a, b) = turned(x - major * turn.cos(), z - major * turn.sin(), -turn);
     cross_section(a, b, section) - minor
+}
+
+/// Tubes that wind around a ring about the y axis, at a distance from its circle; their surface may wind, too.
+fn helical_torus<'a, 'g>(
+    Arguments {
+        x,
+        y,
+        z,
+        p:
+            [
+                major,
+                around_axis,
+                around_ring,
+                relief,
+                minor,
+                distance,
+                stretch,
+                turns,
+                skew,
+                twist,
+            ],
+    }: Arguments<'a, 'g>,
+) -> Term<'a, 'g> {
+    use std::f64::consts::PI;
+    let rho = hypot(x, z);
+    let out = rho - major;
+    let from_circle = hypot(out, y);
+    let (alpha, beta) = (x.atan2(z), out.atan2(y));
+    let turn = (around_axis * alpha + around_ring * beta - PI).folded(x.number(2.0 * PI));
+    let off = from_circle - distance;
+    let square = off.square() + stretch * turn.square();
+    // The limit of the tubes on the other side of the axis.
+    let across = rho + major - distance;
+    let section = square.max(x.number(0.0)).sqrt().min(from_circle + distance);
+    let wave = (twist * alpha + turns * (skew * turn).atan2(off)).cos();
+    let outside = (section - relief * wave).min(across);
+    (-square).if_positive(across, outside) - minor
 }
 
 /// A tube along a spiral of Archimedes in the plane `y = 0`, cut off by a sphere.

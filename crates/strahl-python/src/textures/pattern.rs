@@ -329,6 +329,7 @@ impl Pattern {
         falloff: f64,
         inverse: bool,
         repeat: Triple,
+        turbulence: Triple,
     ) -> Self {
         self.warped(Warp::BlackHole(BlackHole {
             center: vector(center),
@@ -337,6 +338,7 @@ impl Pattern {
             falloff,
             inverse,
             repeat: vector(repeat),
+            turbulence: vector(turbulence),
         }))
     }
 
@@ -347,7 +349,7 @@ impl Pattern {
         })
     }
 
-    /// Around the y axis, the origin, or a circle of this radius.
+    /// Around the y axis, the origin, a circle of this radius, or a cube.
     fn wrapped(
         &self,
         around: &str,
@@ -356,6 +358,7 @@ impl Pattern {
         radius: f64,
     ) -> PyResult<Self> {
         let mapping = match around {
+            "cubic" => return Ok(self.warped(Warp::Cubic)),
             "cylindrical" => Mapping::Cylindrical,
             "spherical" => Mapping::Spherical,
             "toroidal" => Mapping::Toroidal(radius),

@@ -79,6 +79,17 @@ pub(crate) fn equal(a: f64, b: f64) -> bool {
     (a - b).abs() < EPSILON || a == b
 }
 
+/// The vectors of which components were taken, for [`Parser::vector3`].
+#[derive(Debug, Default)]
+pub(crate) struct Members {
+    /// Whether the next operand begins an expression where a vector is wanted.
+    at_start: bool,
+    /// The one whose component the last operand was, if it was one.
+    last: Option<Vector>,
+    /// The same for the operand that began the expression.
+    first: Option<Vector>,
+}
+
 fn truth(b: bool) -> f64 {
     if b { 1.0 } else { 0.0 }
 }
@@ -111,8 +122,37 @@ impl Parser<'_> {
         Ok(match self.lone_vector() {
             // Missing components are zero.
             Some(([x, y, z, ..], _)) => DVec3::new(x, y, z),
-            None => self.expression()?.to_dvec3(),
+            None => self.as_vector()?.to_dvec3(),
         })
+    }
+
+    /// A number of any kind where a vector is wanted. A float that begins with a component of a vector keeps the other components, as in
+    /// POV-Ray (measured): after `translate V.y` with `V = <1, 2, 3>` an object has moved by `<2, 2, 3>`, after `translate 1*V.y` by
+    /// `<2, 2, 2>`.
+    ///
+    /// # Errors
+    /// If there is no numeric expression.
+    fn as_vector(&mut self) -> PResult<Vector> {
+        let place = self.place_of(self.raw());
+        self.members = Members {
+            at_start: true,
+            ..Members::default()
+        };
+        let value = self.expression()?;
+        let of = self.members.first.take();
+        self.members.at_start = false;
+        let (Some(x), Some(of)) = (value.as_float(), of) else {
+            return Ok(value);
+        };
+        let vector = of.with_first(x);
+        if vector.to_dvec3() != value.to_dvec3() {
+            self.warn_hint(
+                place,
+                "where a vector is wanted, a component keeps the other components of its vector, as in POV-Ray",
+                "put it into parentheses for equal components: with V = <1, 2, 3> `V.y` is <2, 2, 3> here, `(V.y)` is <2, 2, 2>",
+            );
+        }
+        Ok(vector)
     }
 
     /// A vector of two components; a float stands for two equal ones.
@@ -269,6 +309,17 @@ impl Parser<'_> {
 
     #[inline]
     fn factor(&mut self) -> PResult<Vector> {
+        if !self.members.at_start {
+            return self.operand();
+        }
+        self.members = Members::default();
+        let value = self.operand();
+        self.members.first = self.members.last.take();
+        value
+    }
+
+    #[inline]
+    fn operand(&mut self) -> PResult<Vector> {
         // Most operands are plain floats with no macro or directive around them.
         if let Some(x) = self.plain_float(self.raw())
             && ends_operand(self.raw_ahead(1).kind)
@@ -517,9 +568,11 @@ impl Parser<'_> {
     #[inline]
     fn components_of(&mut self, value: Vector) -> PResult<Vector> {
         let token = self.peek_behind()?;
+        self.members.last = None;
         if token.kind != Kind::Dot {
             return Ok(value);
         }
+        self.members.last = (value.len() > 1).then_some(value);
         self.take(token)?;
         let name = self.next()?;
         let index = match name.word() {

@@ -30,12 +30,15 @@ pub struct Spline {
 }
 
 impl Spline {
-    /// A spline through points; of several at one parameter the last one counts.
+    /// A spline through points. Of several at one parameter the last one counts, but a point at the largest parameter of at least two so far
+    /// is left out, as in POV-Ray (measured).
     pub fn new(kind: SplineKind, points: impl IntoIterator<Item = (f64, Vector)>) -> Self {
         let mut knots: Vec<(f64, Vector)> = vec![];
         for (t, point) in points {
             let at = knots.partition_point(|(k, _)| *k < t);
+            let is_last = knots.len() > 1 && at + 1 == knots.len();
             match knots.get_mut(at) {
+                Some(knot) if knot.0 == t && is_last => {}
                 Some(knot) if knot.0 == t => knot.1 = point,
                 _ => knots.insert(at, (t, point)),
             }
@@ -67,6 +70,9 @@ impl Spline {
         let (Some(begin), Some(end)) = (knots.get(first), knots.get(last)) else {
             return Vector::new(&[0.0, 0.0]);
         };
+        if let (SplineKind::Cubic, [(_, a), (_, b)]) = (self.kind, &knots[..]) {
+            return a.zip(*b, |a, b| 0.5 * (a + b));
+        }
         if !(t > begin.0) {
             return begin.1;
         }
@@ -209,13 +215,25 @@ impl Parser<'_> {
                 p.next()?;
                 kind = given;
             }
+            let copied = points.len();
+            let (mut all, mut most) = ([0.0; 5], 2);
             p.items("`spline`", |p, _| {
                 p.spend_elements(1)?;
                 let t = p.float()?;
                 p.comma()?;
-                points.push((t, p.expression()?));
+                // A number counts as two; components that are not given are those of the entry before, as in POV-Ray (measured).
+                let given = p.expression()?;
+                let count = given.len().max(2);
+                let given = given.promoted(count).components();
+                all[..count].copy_from_slice(&given[..count]);
+                most = most.max(count);
+                points.push((t, Vector::new(&all)));
                 Ok(())
-            })
+            })?;
+            for (_, point) in points.iter_mut().skip(copied) {
+                *point = point.promoted(most);
+            }
+            Ok(())
         })?;
         if points.is_empty() {
             return Err(self.fail(place, "a spline needs at least one point"));

@@ -149,7 +149,7 @@ impl Parser<'_> {
     fn vstr(&mut self, place: Place) -> PResult<String> {
         let count = self.full_float()?;
         self.comma()?;
-        let vector = self.expression()?;
+        let vector = self.as_vector()?;
         self.comma()?;
         let separator = self.string()?;
         self.comma()?;

@@ -1,5 +1,6 @@
 use super::{Failed, Floor, PResult, Parser, Place, Scopes};
 use crate::directives::{Files, Flow};
+use crate::expr::Members;
 use crate::grammar::{State, UNVERSIONED};
 use crate::include;
 use crate::options::Options;
@@ -82,6 +83,7 @@ impl<'h> Parser<'h> {
             last_step: options.limits.steps.min(options.limits.idle_steps),
             next_check: 0,
             function_operations: 0,
+            members: Members::default(),
             nesting: 0,
             read_bytes,
             message_bytes: 0,

@@ -23,6 +23,7 @@ pub use report::{Failed, PResult};
 pub(crate) use scope::{Scopes, Step, Target};
 
 use crate::directives::Files;
+use crate::expr::Members;
 use crate::grammar::State;
 use crate::options::Options;
 use crate::source::{Chunk, Host};
@@ -104,6 +105,8 @@ pub struct Parser<'h> {
     next_check: u64,
     /// Operations of all functions so far.
     function_operations: u64,
+    /// The components that the current expression takes of vectors.
+    pub(crate) members: Members,
     nesting: usize,
     read_bytes: u64,
     message_bytes: u64,

@@ -86,6 +86,13 @@ impl Vector {
         }
     }
 
+    /// The same with another first component.
+    #[must_use]
+    pub(crate) fn with_first(mut self, x: f64) -> Self {
+        self.components[0] = x;
+        self
+    }
+
     /// The same with `len` components: a float is repeated, a vector truncated or padded with zeros.
     #[inline]
     #[must_use]

@@ -1,4 +1,5 @@
-use strahl_math::noise::Turbulence;
+use super::random::numbers;
+use strahl_math::noise::{Turbulence, lattice_hash};
 use strahl_math::{DVec3, Transform, det};
 
 /// A step that moves the point before a pattern is evaluated.
@@ -35,6 +36,9 @@ pub enum Warp {
         /// The pattern is stretched by the distance to this power.
         distance_exponent: f64,
     },
+    /// The square from 0 to 1 of the x-y plane folded to a cube around the origin: four columns of `u` by three rows of `v`, as the texture
+    /// coordinates of a box are unfolded. z is the distance, the largest coordinate.
+    Cubic,
     /// The pattern of one plane, continued along its normal.
     Planar {
         /// Unit normal of the plane, z by default.
@@ -71,6 +75,8 @@ pub struct BlackHole {
     /// Edge lengths of the blocks in which the hole is repeated; 0 or less is no repetition along that axis. A hole that isn't wholly in its
     /// block is moved up and the block made longer, until it is (measured).
     pub repeat: DVec3,
+    /// How far the holes are moved along each axis, times random numbers of their blocks. Blocks are longer by as much.
+    pub turbulence: DVec3,
 }
 
 impl BlackHole {
@@ -83,16 +89,24 @@ impl BlackHole {
             falloff: 2.0,
             inverse: false,
             repeat: DVec3::ZERO,
+            turbulence: DVec3::ZERO,
         }
     }
 
     fn apply(&self, p: DVec3) -> DVec3 {
         let mut from_center = p - self.center;
+        let mut block = [0; 3];
         for axis in (0..3).filter(|axis| self.repeat[*axis] > 0.0) {
             let center = self.center[axis].max(self.radius);
-            let length = self.repeat[axis].max(center + self.radius);
-            let corner = (p[axis] / length).floor() * length;
-            from_center[axis] = p[axis] - corner - center;
+            let length = self.repeat[axis].max(center + self.radius + self.turbulence[axis]);
+            let number = (p[axis] / length).floor();
+            from_center[axis] = p[axis] - number * length - center;
+            block[axis] = number as i64;
+        }
+        if self.turbulence != DVec3::ZERO {
+            let by_chance = numbers()[lattice_hash(block)..].first_chunk();
+            from_center -=
+                self.turbulence * by_chance.map_or(DVec3::ZERO, |u| DVec3::from_array(*u));
         }
         let distance = from_center.length();
         if !(distance < self.radius) {
@@ -127,6 +141,7 @@ impl Warp {
                 orientation,
                 distance_exponent,
             } => orient(mapping.unwrap(p, *distance_exponent), *orientation),
+            Self::Cubic => folded(p),
             Self::Planar {
                 orientation,
                 distance,
@@ -150,6 +165,28 @@ fn repeat(p: DVec3, axis: usize, width: f64, offset: DVec3, flip: [bool; 3]) -> 
         }
     }
     q + offset * copy
+}
+
+/// The place on the unfolded faces of a cube, as POV-Ray folds it (measured). The first of +x, +y, -x, -y and z that is farthest is the face.
+fn folded(p: DVec3) -> DVec3 {
+    let far = p.abs().max_element();
+    let part = if far > 0.0 { p / far } else { DVec3::ZERO };
+    let (x, y, z) = (part.x / 8.0, part.y / 6.0, part.z / 8.0);
+    let deep = part.z / 6.0;
+    let (u, v) = if p.x == far {
+        (5.0 / 8.0 - z, 0.5 + y)
+    } else if p.y == far {
+        (3.0 / 8.0 + x, 5.0 / 6.0 - deep)
+    } else if -p.x == far {
+        (1.0 / 8.0 + z, 0.5 + y)
+    } else if -p.y == far {
+        (3.0 / 8.0 + x, 1.0 / 6.0 + deep)
+    } else if p.z == far {
+        (3.0 / 8.0 + x, 0.5 + y)
+    } else {
+        (7.0 / 8.0 - x, 0.5 + y)
+    };
+    DVec3::new(u, v, far)
 }
 
 impl Mapping {

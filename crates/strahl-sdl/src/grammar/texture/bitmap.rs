@@ -6,7 +6,8 @@ use crate::parser::{PResult, Parser, Place, has_ending};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
 use strahl_formats::image::{
-    PictureCodes, TextureUse, decode_heights, decode_indices, decode_texture, picture_codes,
+    PictureCodes, TexelNumbers, TextureUse, decode_indices, decode_numbers, decode_texture,
+    picture_codes,
 };
 use strahl_function::Cost;
 use strahl_math::DVec3;
@@ -179,18 +180,20 @@ impl Parser<'_> {
         let (_, name) = self.picture_name()?;
         let place = self.place();
         let file = self.read_file(&name, place)?;
-        let codes = match decode_heights(&file.bytes, &name) {
-            Ok(codes) => codes,
+        let TexelNumbers {
+            width,
+            height,
+            numbers,
+        } = match decode_numbers(&file.bytes, &name) {
+            Ok(found) => found,
             Err(error) => return Err(self.fail(place, error.to_string())),
         };
-        // Heights have the code in their upper byte.
-        let texels = codes.values.iter().map(|value| (value >> 8) as u8);
         let image = TextureImage::try_new(
-            codes.width,
-            codes.height,
+            width,
+            height,
             TexelChannels::Gray,
             ColorSpace::Linear,
-            TexelData::U8(texels.collect()),
+            TexelData::U8(numbers),
         );
         match image {
             Ok(image) => Ok(Some((Arc::new(image), Some((name, place))))),

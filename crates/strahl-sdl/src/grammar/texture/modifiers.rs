@@ -101,7 +101,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 self.count_parts(16)?;
                 let warp = self.braces(Self::warp)?;
-                modifiers.warps.extend(warp);
+                modifiers.warps.push(warp);
             }
             _ => return self.octave_item(&mut modifiers.octaves, token),
         }
@@ -133,41 +133,41 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    /// The content of the braces of `warp`; `None` for an unsupported warp.
-    fn warp(&mut self) -> PResult<Option<Warp>> {
+    /// The content of the braces of `warp`.
+    fn warp(&mut self) -> PResult<Warp> {
         let token = self.peek()?;
         let mapping = match token.word() {
             Some(Word::Repeat) => {
                 self.take(token)?;
-                return self.repeat_warp().map(Some);
+                return self.repeat_warp();
             }
             Some(Word::BlackHole) => {
                 self.take(token)?;
-                return self.black_hole().map(Some);
+                return self.black_hole();
             }
             Some(Word::Turbulence) => {
                 self.take(token)?;
-                return self.turbulence_warp().map(Some);
+                return self.turbulence_warp();
             }
             Some(Word::Planar) => {
                 self.take(token)?;
-                return self.planar_warp().map(Some);
+                return self.planar_warp();
             }
             Some(Word::Cylindrical) => Mapping::Cylindrical,
             Some(Word::Spherical) => Mapping::Spherical,
             Some(Word::Toroidal) => Mapping::Toroidal(1.0),
             Some(Word::Cubic) => {
-                self.skip_item(token, "`warp`")?;
-                return Ok(None);
+                self.take(token)?;
+                return Ok(Warp::Cubic);
             }
             _ => {
                 let known = "`repeat`, `black_hole`, `turbulence`, `cylindrical`, `spherical`, \
-                             `toroidal` or `planar`";
+                             `toroidal`, `cubic` or `planar`";
                 return Err(self.unexpected(token, known));
             }
         };
         self.take(token)?;
-        self.mapping_warp(mapping).map(Some)
+        self.mapping_warp(mapping)
     }
 
     /// `<width along one axis> [offset <...>] [flip <...>]`
@@ -210,6 +210,7 @@ impl Parser<'_> {
         let center = self.vector3()?;
         self.comma()?;
         let mut hole = BlackHole::new(center, self.float()?);
+        let (mut repeats, mut turbulence) = (false, DVec3::ZERO);
         self.items("`black_hole`", |p, token| {
             match token.word() {
                 Some(Word::Strength) => {
@@ -227,11 +228,20 @@ impl Parser<'_> {
                 Some(Word::Repeat) => {
                     p.take(token)?;
                     hole.repeat = p.vector3()?;
+                    repeats = true;
+                }
+                Some(Word::Turbulence) => {
+                    p.take(token)?;
+                    turbulence = p.vector3()?;
                 }
                 _ => return p.skip_item(token, "`black_hole`"),
             }
             Ok(())
         })?;
+        // As in POV-Ray (measured) turbulence is for holes that are repeated, if only 0 times.
+        if repeats {
+            hole.turbulence = turbulence;
+        }
         Ok(Warp::BlackHole(hole))
     }
 

@@ -72,6 +72,43 @@ pub(super) fn built() -> Vec<Built> {
             ),
         ),
         (
+            "bozo warp{black_hole <.5,.6,.7>,.45 repeat <1,2,3> turbulence <.3,.2,.4>}",
+            field(
+                Pattern::Bozo,
+                Modifiers {
+                    warps: vec![Warp::BlackHole(BlackHole {
+                        repeat: DVec3::new(1.0, 2.0, 3.0),
+                        turbulence: DVec3::new(0.3, 0.2, 0.4),
+                        ..BlackHole::new(DVec3::new(0.5, 0.6, 0.7), 0.45)
+                    })],
+                    ..Modifiers::default()
+                },
+            ),
+        ),
+        (
+            "bozo warp{black_hole <.5,.5,0>,.9 repeat <0,0,0> turbulence <.3,.2,.4>}",
+            field(
+                Pattern::Bozo,
+                Modifiers {
+                    warps: vec![Warp::BlackHole(BlackHole {
+                        turbulence: DVec3::new(0.3, 0.2, 0.4),
+                        ..BlackHole::new(DVec3::new(0.5, 0.5, 0.0), 0.9)
+                    })],
+                    ..Modifiers::default()
+                },
+            ),
+        ),
+        (
+            "bozo warp{cubic}",
+            field(
+                Pattern::Bozo,
+                Modifiers {
+                    warps: vec![Warp::Cubic],
+                    ..Modifiers::default()
+                },
+            ),
+        ),
+        (
             "bozo warp{cylindrical}",
             field(
                 Pattern::Bozo,
