@@ -88,6 +88,8 @@ pub(crate) struct Surface<'s> {
     pub(crate) shows_lights: bool,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
+    /// Both indices for white light.
+    white_etas: (f64, f64),
     /// Whether the ray is in what is on the other side of the surface, and gets out of it there.
     inside: bool,
     /// What is inside of the object.
@@ -122,6 +124,7 @@ impl<'s> Surface<'s> {
             shows_lights: true,
             eta_1: 1.0,
             eta_2: 1.0,
+            white_etas: (1.0, 1.0),
             inside: false,
             own: Medium {
                 body: Body::material(MaterialId(0)),
@@ -190,6 +193,13 @@ impl<'s> Surface<'s> {
         };
         let index = |id| index_of(scene, id, branch.part);
         (self.eta_1, self.eta_2) = (index(self.medium_1), index(self.medium_2));
+        self.white_etas = match branch.part.is_white() {
+            true => (self.eta_1, self.eta_2),
+            false => {
+                let index = |id| index_of(scene, id, SpectralPart::WHITE);
+                (index(self.medium_1), index(self.medium_2))
+            }
+        };
         if self.painted != Some((appearance.material, self.entering)) {
             self.painted = None;
             material.store_at(point.uv, &mut self.material);
@@ -211,16 +221,17 @@ impl<'s> Surface<'s> {
 
     /// The index of refraction behind the surface divided by that before it, for reflections that follow Fresnel's equations.
     ///
-    /// As in POV-Ray (measured) it is 1, so that these equations reflect nothing, where a ray leaves an object that lies in another one:
+    /// As in POV-Ray (measured) it is that of white light also for a part of the spectrum. And it is 1, so that these equations reflect nothing, where a ray leaves an object that lies in another one:
     /// glass under a sky sphere, too.
     pub(crate) fn fresnel_eta(&self) -> f64 {
+        let (before, behind) = self.white_etas;
         if self.inside && self.medium_2.is_some() {
             1.0
-        } else if self.eta_1 == 1.0 {
+        } else if before == 1.0 {
             // The same bits without the division, for most surfaces.
-            self.eta_2
+            behind
         } else {
-            self.eta_2 / self.eta_1
+            behind / before
         }
     }
 
