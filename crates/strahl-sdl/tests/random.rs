@@ -71,4 +71,6 @@ groups! {
     spirals_have_a_whole_number_of_arms,
     black_holes_are_not_repeated_along_axes_with_negative_numbers,
     facets_are_cells_of_places_or_of_directions,
+    parts_of_the_spectrum_have_the_weight_of_the_whole,
+    fresnel_takes_the_index_of_white_light,
 }

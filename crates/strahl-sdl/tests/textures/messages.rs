@@ -10,7 +10,6 @@ fn what_is_not_supported_is_named() {
         ("pigment { facets }", "facets"),
         ("pigment { tiling 25 }", "tiling 25"),
         ("interior { media { emission 1 } ior 1.5 }", "media"),
-        ("pigment { checker warp { cubic } }", "cubic"),
     ] {
         let (_, messages) = scene(&format!("sphere {{ 0, 1 {items} }}"));
         assert!(
