@@ -281,8 +281,7 @@ class Pattern(Movable):
             number(strength, "strength"),
             number(falloff, "falloff"),
             bool(inverse),
-            vector(repeat, "repeat"),
-            vector(turbulence, "turbulence"),
+            (vector(repeat, "repeat"), vector(turbulence, "turbulence")),
         )
         return self._of(core, self._name)
 

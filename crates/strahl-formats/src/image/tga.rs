@@ -20,9 +20,9 @@ pub(super) fn encode(
             // As in POV-Ray colours are straight, as in PNG.
             let options = WriteOptions {
                 bit_depth: BitDepth::Eight,
-                ..options.clone()
+                ..*options
             };
-            push_straight(&picture.rgb, alpha, &options, &mut codes);
+            push_straight(picture.rgb, alpha, &options, &mut codes);
             ExtendedColorType::Rgba8
         }
         None => {

@@ -321,6 +321,7 @@ impl Pattern {
         })
     }
 
+    /// `blocks` are the edges of blocks with a hole each, and how far their holes are moved.
     fn drawn_in(
         &self,
         center: Triple,
@@ -328,9 +329,9 @@ impl Pattern {
         strength: f64,
         falloff: f64,
         inverse: bool,
-        repeat: Triple,
-        turbulence: Triple,
+        blocks: (Triple, Triple),
     ) -> Self {
+        let (repeat, turbulence) = blocks;
         self.warped(Warp::BlackHole(BlackHole {
             center: vector(center),
             radius,
