@@ -384,6 +384,7 @@ impl<'a> Lexer<'a> {
         let next = rest.iter().copied().find(|b| !is_blank(*b)).unwrap_or(0);
         let declared = match (directive(1), directive(2)) {
             (Some(Directive::Declare | Directive::Local), _) => matches!(next, b'=' | b'['),
+            (Some(Directive::Macro), _) => next == b'(',
             (_, Some(Directive::For)) => next == b',',
             // A parameter of a macro: only names and commas are between the opening parenthesis and the word.
             _ => {

@@ -1,10 +1,11 @@
+use crate::expr::is_true;
 use crate::parser::{BlockKind, PResult, Parser};
 use crate::token::{Directive, Kind};
 
 impl Parser<'_> {
     /// `( expression )` as a truth value.
     pub(super) fn condition(&mut self) -> PResult<bool> {
-        Ok(self.parenthesised_float()? != 0.0)
+        Ok(is_true(self.parenthesised_float()?))
     }
 
     pub(super) fn parenthesised_float(&mut self) -> PResult<f64> {

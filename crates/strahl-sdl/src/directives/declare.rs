@@ -207,6 +207,10 @@ impl Parser<'_> {
         }
         let symbol = self.raw_name("the name of a variable")?;
         let place = self.place();
+        let is_whole = !matches!(self.raw().kind, Kind::LeftBracket | Kind::Dot);
+        if is_whole && self.scopes.remove_parameter(symbol) {
+            return self.end_of_assignment();
+        }
         match self.scopes.target(symbol, false) {
             Some(mut target) => {
                 self.steps_into(&mut target)?;

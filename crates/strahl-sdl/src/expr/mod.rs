@@ -90,6 +90,11 @@ pub(crate) struct Members {
     first: Option<Vector>,
 }
 
+/// Whether a number counts as true: what counts as equal to 0 is false, as in POV-Ray (measured).
+pub(crate) fn is_true(x: f64) -> bool {
+    !equal(x, 0.0)
+}
+
 fn truth(b: bool) -> f64 {
     if b { 1.0 } else { 0.0 }
 }
@@ -216,7 +221,7 @@ impl Parser<'_> {
         let yes = self.nested(Self::full_expression)?;
         self.expect(Kind::Colon)?;
         let no = self.nested(Self::full_expression)?;
-        let holds = self.as_float(condition, place)? != 0.0;
+        let holds = is_true(self.as_float(condition, place)?);
         Ok(if holds { yes } else { no })
     }
 
@@ -280,30 +285,20 @@ impl Parser<'_> {
                 // Of any number, also of 0 and of negative ones (measured).
                 a.zip(b, |x, y| if y == 0.0 { f64::INFINITY } else { x / y })
             }
-            Kind::Ampersand => a.zip(b, |x, y| truth(x != 0.0 && y != 0.0)),
-            Kind::Bar => a.zip(b, |x, y| truth(x != 0.0 || y != 0.0)),
-            Kind::Equal | Kind::NotEqual if a.len() > 1 || b.len() > 1 => {
-                let len = a.len().max(b.len());
-                let (a, b) = (a.promoted(len), b.promoted(len));
-                let same = a
-                    .as_slice()
-                    .iter()
-                    .zip(b.as_slice())
-                    .all(|(x, y)| equal(*x, *y));
-                Vector::float(truth(same == (operator == Kind::Equal)))
-            }
-            _ => {
-                let (x, y) = (self.as_float(a, place)?, self.as_float(b, place)?);
+            Kind::Ampersand => a.zip(b, |x, y| truth(is_true(x) && is_true(y))),
+            Kind::Bar => a.zip(b, |x, y| truth(is_true(x) || is_true(y))),
+            // Component by component, as in POV-Ray (measured).
+            _ => a.zip(b, |x, y| {
                 let same = equal(x, y);
-                Vector::float(truth(match operator {
+                truth(match operator {
                     Kind::Equal => same,
                     Kind::NotEqual => !same,
                     Kind::Less => x < y,
                     Kind::Greater => x > y,
                     Kind::LessEqual => x < y || same,
                     _ => x > y || same,
-                }))
-            }
+                })
+            }),
         })
     }
 
@@ -347,7 +342,7 @@ impl Parser<'_> {
             }
             Kind::Bang => {
                 self.take(token)?;
-                Ok(self.nested_end(Self::factor)?.map(|x| truth(x == 0.0)))
+                Ok(self.nested_end(Self::factor)?.map(|x| truth(!is_true(x))))
             }
             Kind::LeftParen => {
                 self.take(token)?;

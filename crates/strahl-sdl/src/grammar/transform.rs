@@ -80,19 +80,19 @@ impl Parser<'_> {
             .map_err(|e| self.fail(place, e.to_string()))
     }
 
-    /// `{ ... }` or a name after `transform`; `inverse` inverts everything before it.
+    /// `{ ... }` or a name after `transform`; `inverse`, wherever it stands, inverts all of the braces once, as in POV-Ray (measured).
     pub(crate) fn transform_block(&mut self) -> PResult<Transform> {
         if let Some(named) = self.accept_transform()? {
             return Ok(named);
         }
-        let mut all = Transform::IDENTITY;
+        let (mut all, mut is_inverse) = (Transform::IDENTITY, false);
         self.braces(|p| {
             p.items("`transform`", |p, token| {
                 if let Some(next) = p.transformation(token)? {
                     all = all.then(&next);
                 } else if token.is(Word::Inverse) {
                     p.take(token)?;
-                    all = all.inverted();
+                    is_inverse = true;
                 } else if let Some(named) = p.accept_transform()? {
                     all = all.then(&named);
                 } else {
@@ -101,7 +101,7 @@ impl Parser<'_> {
                 Ok(())
             })
         })?;
-        Ok(all)
+        Ok(if is_inverse { all.inverted() } else { all })
     }
 
     fn accept_transform(&mut self) -> PResult<Option<Transform>> {

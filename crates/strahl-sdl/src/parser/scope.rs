@@ -135,6 +135,13 @@ impl Scopes {
         })
     }
 
+    /// Removes a name that is a parameter of the innermost macro and stands for a variable of the caller, which stays. Tells whether it is one.
+    pub(crate) fn remove_parameter(&mut self, symbol: Symbol) -> bool {
+        let stack = self.bindings.get_mut(symbol.index());
+        let found = stack.and_then(|stack| stack.pop_if(|b| matches!(b.bound, Bound::Alias(_))));
+        found.is_some()
+    }
+
     /// Stores a value at a location; returns `false` if the location no longer exists or is not an element of the container. A
     /// value for a scope that has been left is dropped.
     pub(crate) fn store(&mut self, target: &Target, value: Value) -> bool {
