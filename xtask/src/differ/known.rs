@@ -1,15 +1,12 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 65] = [
+pub(super) const KNOWN: [(&[&str], &str); 62] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
-    (&["polygon", "checker"], CELLS),
     (&["polygon", "triangular"], CELLS),
     (&["polygon", "square"], CELLS),
-    (&["polygon", "brick"], CELLS),
-    (&["polygon", "cells"], CELLS),
     (&["bicubic_patch"], "POV-Ray shows triangles"),
     (&["prism", "interior_texture"], INSIDES),
     (&["lathe", "interior_texture"], INSIDES),
