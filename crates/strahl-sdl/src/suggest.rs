@@ -20,13 +20,17 @@ fn letters(name: &str) -> u64 {
         .fold(0, |set, b| set | 1 << (b.to_ascii_lowercase() & 63))
 }
 
-/// The name with the smallest edit distance (the first of several) and its data, if at most a third of the letters differ.
+/// The name with the smallest edit distance (the first of several) and its data, if at most a third of the letters differ; a single letter
+/// only in case.
 pub(crate) fn closest<'a, T>(
     name: &str,
     known: impl Iterator<Item = (Candidate<'a>, T)>,
 ) -> Option<(&'a str, T)> {
     let wanted = letters(name);
-    let mut allowed = (name.chars().count() / 3).clamp(1, 4);
+    let mut allowed = match name.chars().count() {
+        0 | 1 => 0,
+        count => (count / 3).clamp(1, 4),
+    };
     let mut best = None;
     for (candidate, about) in known {
         // A replaced letter changes at most two bits of the set, so most candidates are skipped quickly.
