@@ -2,6 +2,7 @@
 
 mod antialiasing;
 mod common;
+mod evaluation;
 mod features;
 mod hostile;
 mod language;

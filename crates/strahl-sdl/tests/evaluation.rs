@@ -1,0 +1,157 @@
+//! What expressions give where POV-Ray's rules surprise.
+
+use crate::common::debug;
+use crate::language::values;
+
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn numbers_that_count_as_zero_are_false() {
+    let counted = debug(
+        "#declare I = 1; #declare N = 0; #while (I) #declare I = I - 0.1; #declare N = N + 1; #end #debug str(N, 0, 0)",
+    );
+    assert_eq!(counted, "10");
+    let list = [
+        "(9.9e-11 ? 1 : 0)",
+        "(1.01e-10 ? 1 : 0)",
+        "(-1e-11 ? 1 : 0)",
+        "(.3 - .1 - .2 ? 1 : 0)",
+        "!1e-11",
+        "(1e-11 & 1)",
+        "(1e-11 | 0)",
+    ];
+    assert_eq!(values("", &list), [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    assert_eq!(
+        debug("#if (1e-11) #debug \"a\" #else #debug \"b\" #end"),
+        "b"
+    );
+}
+
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn vectors_are_compared_component_by_component() {
+    for (comparison, measured) in [
+        ("(<1, 2, 3> = <1, 2, 3>)", "1 1 1"),
+        ("(x != y)", "1 1 0"),
+        ("(1 = <1, 2, 3>) + 1", "2 1 1"),
+        ("(<1, 2, 3> < <2, 2, 2>)", "1 0 0"),
+        ("(2 <= <1, 2, 3>)", "0 1 1"),
+        ("!<1e-11, 1, 0>", "1 0 1"),
+    ] {
+        let text = format!("#declare V = {comparison}; #debug vstr(3, V, \" \", 0, 0)");
+        assert_eq!(debug(&text), measured, "{comparison}");
+    }
+}
+
+#[test]
+fn an_undefined_parameter_leaves_the_variable_of_the_caller() {
+    let text = "#macro M(A) #undef A #ifdef (A) #debug \"A\" #end #end #declare Q = 1; M(Q) #ifdef (Q) #debug \"Q\" #end";
+    assert_eq!(debug(text), "Q");
+}
+
+#[test]
+fn words_of_later_versions_may_be_names_of_macros() {
+    let text = "#macro cmap(V) V*2 #end #macro blend_mode(mixed) mixed #end #debug str(cmap(blend_mode(3)), 0, 0)";
+    assert_eq!(debug(text), "6");
+}
+
+/// Of POV-Ray 3.7.0.10: wherever it stands.
+#[test]
+fn inverse_inverts_all_of_a_transformation() {
+    let at = |items: &str| {
+        values(
+            &format!("#declare O = sphere {{ <1, 0, 0>, 1 transform {{ {items} }} }};"),
+            &["min_extent(O).x", "min_extent(O).y", "min_extent(O).z"],
+        )
+    };
+    let expected = at("rotate 30*y translate x inverse");
+    for items in [
+        "inverse rotate 30*y translate x",
+        "rotate 30*y inverse translate x",
+        "rotate 30*y inverse inverse translate x",
+        "translate -x rotate -30*y",
+    ] {
+        for (found, expected) in at(items).iter().zip(&expected) {
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{items}: {found} {expected}"
+            );
+        }
+    }
+}
+
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn components_where_vectors_are_wanted_keep_the_others() {
+    let setup = "#declare S = spline { linear_spline 0, <1, 2, 3> 1, <2, 4, 6> }; #declare V2 = <3, 4>; #declare F = 2;
+        #declare V3 = <1, 2, 3>; #declare A = array[1] { <3, 4, 5> }; #declare C = rgb <0.1, 0.5, 0.9>; #declare W = V3.y;
+        #macro M(Q) Q #end #macro N(Q) Q.y #end";
+    for (scalar, measured) in [
+        ("V3.y", "2 2 3"),
+        ("-V3.y", "-2 2 3"),
+        ("<1, 2, 3>.y", "2 2 3"),
+        ("S(0).y", "2 2 3"),
+        ("A[0].y", "4 4 5"),
+        ("V2.y", "4 4 0"),
+        ("x.x", "1 0 0"),
+        ("C.green*2", "1 0.5 0.9"),
+        ("V3.y*V3.z", "6 2 3"),
+        ("V3.y/2", "1 2 3"),
+        ("V3.y*F", "4 2 3"),
+        ("V3.y - 1", "1 2 3"),
+        ("F*V3.y", "4 4 4"),
+        ("2*V3.y", "4 4 4"),
+        ("(V3.y)", "2 2 2"),
+        ("max(V3.y, 1)", "2 2 2"),
+        ("V3.y + V3", "3 4 5"),
+        ("V3 + V3.y", "3 4 5"),
+        ("S(0).y*x", "2 0 0"),
+        ("W", "2 2 2"),
+        ("M(V3.y)", "2 2 2"),
+        ("N(V3)", "2 2 3"),
+    ] {
+        let setup = format!("{setup} #declare O = sphere {{ 0, 1 translate {scalar} }};");
+        let list = ["min_extent(O).x", "min_extent(O).y", "min_extent(O).z"];
+        let found = values(&setup, &list);
+        let measured = measured
+            .split(' ')
+            .map(|x| x.parse::<f64>().expect("a number"));
+        for (found, measured) in found.iter().zip(measured) {
+            assert!(
+                (found + 1.0 - measured).abs() < 1e-9,
+                "{scalar}: {found} {measured}"
+            );
+        }
+    }
+    let found = values(
+        setup,
+        &["vlength(V3.y)", "vdot(V3.y, <1, 1, 1>)", "W", "V3.y"],
+    );
+    assert_eq!(found, [17f64.sqrt(), 7.0, 2.0, 2.0]);
+    assert_eq!(
+        debug(&format!("{setup} #debug vstr(3, V3.y, \" \", 0, 0)")),
+        "2 2 3"
+    );
+}
+
+/// Of POV-Ray 3.7.0.10, which keeps extents with the digits of f32.
+#[test]
+fn extents_are_those_of_povray() {
+    let rows = include_str!("data/extents.tsv").lines().skip(1);
+    for row in rows {
+        let (object, measured) = row.split_once('\t').expect("an object and numbers");
+        let setup = format!("#declare O = {object};");
+        let list = ["min_extent(O).x", "min_extent(O).y", "min_extent(O).z"];
+        let others = ["max_extent(O).x", "max_extent(O).y", "max_extent(O).z"];
+        let found = values(&setup, &[list, others].concat());
+        let measured = measured
+            .split('\t')
+            .map(|x| x.parse::<f64>().expect("a number"));
+        for (found, measured) in found.iter().zip(measured) {
+            let near = 2e-7 * measured.abs().max(1.0);
+            assert!(
+                (found - measured).abs() <= near,
+                "{object}: {found} {measured}"
+            );
+        }
+    }
+}
