@@ -5,7 +5,7 @@
 //! quickly, such as spheres and meshes, have no bounds. An intersection is seen only through the boxes of its bounded parts, a
 //! difference through that of its first part.
 
-use super::extents::{extent, is_smaller, moved, own_extent};
+use super::extents::{extent, extent_within, is_smaller};
 use super::reuse::Shared;
 use strahl_geometry::{Cuboid, Primitive, Shape};
 use strahl_math::{Aabb, DVec3, Transform};
@@ -28,7 +28,7 @@ pub(super) fn deciding(object: &Object, given: Vec<Object>, shared: &Shared) -> 
     let mut around = given.iter().fold(Aabb::EVERYTHING, |all, bound| {
         all.intersection(&extent(bound, shared))
     });
-    let own = unbounded_extent(object, shared);
+    let own = extent_within(object, CsgOp::Bound, shared);
     match keeps {
         Keeps::Bounds if !around.is_bounded() => vec![],
         Keeps::Bounds if given.iter().all(|bound| surrounds(bound, &own)) => vec![],
@@ -113,24 +113,6 @@ fn is_mesh(kind: &ObjectKind) -> bool {
         kind,
         ObjectKind::Shape(Shape::TriangleMesh(_) | Shape::Brep(_))
     )
-}
-
-/// The box around an object without its bounds, in its parent's space.
-fn unbounded_extent(object: &Object, shared: &Shared) -> Aabb {
-    let (mut inner, mut maps) = (object, vec![object.transform.as_deref()]);
-    while let ObjectKind::Csg {
-        op: CsgOp::Bound,
-        children,
-    } = &inner.kind
-        && let Some(first) = children.0.first()
-    {
-        maps.push(first.transform.as_deref());
-        inner = first;
-    }
-    let outwards = maps.into_iter().rev();
-    outwards.fold(own_extent(&inner.kind, shared), |bounds, map| {
-        moved(map, bounds)
-    })
 }
 
 /// Whether a bound certainly contains a box.

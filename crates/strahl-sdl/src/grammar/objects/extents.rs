@@ -32,23 +32,26 @@ fn volume(bounds: &Aabb) -> f64 {
 
 /// The box around an object, as `min_extent` and `max_extent` tell it: an inverted object has that of the object itself.
 pub(in crate::grammar) fn told_extent(object: &Object, shared: &Shared) -> Aabb {
+    let bounds = extent_within(object, CsgOp::Inverse, shared);
+    if bounds.is_empty() || bounds.is_bounded() {
+        bounds
+    } else {
+        Aabb::EVERYTHING
+    }
+}
+
+/// The box around what an object is without operations of this kind on it, in the object's parent's space.
+pub(super) fn extent_within(object: &Object, without: CsgOp, shared: &Shared) -> Aabb {
     let (mut inner, mut maps) = (object, vec![]);
-    while let ObjectKind::Csg {
-        op: CsgOp::Inverse,
-        children,
-    } = &inner.kind
+    while let ObjectKind::Csg { op, children } = &inner.kind
+        && *op == without
         && let Some(first) = children.0.first()
     {
         maps.push(inner.transform.as_deref());
         inner = first;
     }
     let outwards = maps.into_iter().rev();
-    let bounds = outwards.fold(extent(inner, shared), |bounds, map| moved(map, bounds));
-    if bounds.is_empty() || bounds.is_bounded() {
-        bounds
-    } else {
-        Aabb::EVERYTHING
-    }
+    outwards.fold(extent(inner, shared), |bounds, map| moved(map, bounds))
 }
 
 /// The box around an object in its parent's space.
@@ -62,7 +65,7 @@ pub(super) fn own_extent(kind: &ObjectKind, shared: &Shared) -> Aabb {
 }
 
 /// A box after a transformation.
-pub(super) fn moved(map: Option<&Transform>, bounds: Aabb) -> Aabb {
+fn moved(map: Option<&Transform>, bounds: Aabb) -> Aabb {
     map.map_or(bounds, |map| map.bounds_to_world(&bounds))
 }
 
