@@ -1,7 +1,10 @@
+mod periodic;
+
 use crate::rounding::{
     above, add_down, add_up, below, div_down, div_up, finite_sums, greater, less, lower, mul_down,
     mul_up, or, stepped, upper,
 };
+pub(crate) use periodic::triangle;
 use strahl_math::det;
 
 /// An interval that certainly contains every value an expression takes, and whether NaN may be among them.
@@ -24,12 +27,9 @@ pub struct Bounds {
 
 /// The software functions of `strahl_math::det` are good to about one unit in the last place (musl's documentation);
 /// four are allowed for.
-const LIBRARY_ERROR: f64 = 4.0 * f64::EPSILON;
+pub(crate) const LIBRARY_ERROR: f64 = 4.0 * f64::EPSILON;
 /// `det::pow` multiplies up to six squares and six factors for whole exponents; 64 roundings bound them all.
-const POWER_ERROR: f64 = 64.0 * f64::EPSILON;
-/// Beyond this magnitude a sine is bounded by -1 and 1 only: its period can't be counted reliably in f64.
-const PERIODS: f64 = 1e6;
-
+pub(crate) const POWER_ERROR: f64 = 64.0 * f64::EPSILON;
 impl Bounds {
     /// Every number.
     pub const ENTIRE: Self = Self::new(f64::NEG_INFINITY, f64::INFINITY);
@@ -471,75 +471,6 @@ impl Bounds {
             min: if self.min < 0.0 { -magnitude } else { -0.0 },
             max: if self.max > 0.0 { magnitude } else { 0.0 },
             nan,
-        }
-    }
-
-    /// Bounds of `det::sin` (`phase` 0) and `det::cos` (`phase` 0.25: a quarter turn ahead).
-    #[inline]
-    pub(crate) fn wave(self, f: impl Fn(f64) -> f64, phase: f64) -> Self {
-        self.all_phases()
-            .unwrap_or_else(|| self.wave_between(f(self.min), f(self.max), phase))
-    }
-
-    /// Bounds of `det::sin` and of `det::cos`.
-    #[inline]
-    pub(crate) fn waves(self) -> [Self; 2] {
-        if let Some(all) = self.all_phases() {
-            return [all, all];
-        }
-        let (from, to) = (det::sin_cos(self.min), det::sin_cos(self.max));
-        [
-            self.wave_between(from.0, to.0, 0.0),
-            self.wave_between(from.1, to.1, 0.25),
-        ]
-    }
-
-    /// Bounds of sine and cosine that need not be computed.
-    #[inline(always)]
-    fn all_phases(self) -> Option<Self> {
-        if self.is_empty() {
-            return Some(self);
-        }
-        let full = Self::new(-1.0, 1.0).with_nan(self.nan || self.is_unbounded());
-        (!(self.min > -PERIODS && self.max < PERIODS)).then_some(full)
-    }
-
-    /// [`wave`](Self::wave) with these values at its ends.
-    #[inline(always)]
-    fn wave_between(self, a: f64, b: f64, phase: f64) -> Self {
-        // In turns after a maximum; the margin exceeds every rounding up to PERIODS.
-        let (from, to) = (
-            self.min / std::f64::consts::TAU + phase - 0.25 - 1e-9,
-            self.max / std::f64::consts::TAU + phase - 0.25 + 1e-9,
-        );
-        Self {
-            min: if (from + 0.5).floor() < (to + 0.5).floor() {
-                -1.0
-            } else {
-                upper(below(lower(a, b), LIBRARY_ERROR), -1.0)
-            },
-            max: if from.floor() < to.floor() {
-                1.0
-            } else {
-                lower(above(upper(a, b), LIBRARY_ERROR), 1.0)
-            },
-            nan: self.nan,
-        }
-    }
-
-    pub(crate) fn tan(self) -> Self {
-        if self.is_empty() {
-            return self;
-        }
-        let (from, to) = (
-            self.min / std::f64::consts::PI + 0.5 - 1e-9,
-            self.max / std::f64::consts::PI + 0.5 + 1e-9,
-        );
-        let counted = self.min > -PERIODS && self.max < PERIODS;
-        if counted && from.floor() == to.floor() {
-            self.map_rising(det::tan, (f64::NEG_INFINITY, f64::INFINITY))
-        } else {
-            Self::ENTIRE.with_nan(self.nan || self.is_unbounded())
         }
     }
 

@@ -83,6 +83,8 @@ binary! {
     div = Div;
     /// The remainder of truncated division, with the sign of `a`.
     modulo = Mod;
+    /// The distance of `a` from the nearest multiple of `b`: a triangle wave.
+    triangle = Triangle;
     /// `a` to the power of `b`; NaN for a negative `a` unless `b` is whole.
     pow = Pow;
     /// The angle of the point `(b, a)`.

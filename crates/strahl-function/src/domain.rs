@@ -194,6 +194,7 @@ impl Domain for Lanes {
             BinaryOp::Div => a.zip(b, |x, y| x / y),
             BinaryOp::Min => a.zip(b, |x, y| BinaryOp::Min.value(x, y)),
             BinaryOp::Max => a.zip(b, |x, y| BinaryOp::Max.value(x, y)),
+            BinaryOp::Triangle => a.zip(b, |x, y| BinaryOp::Triangle.value(x, y)),
             BinaryOp::Less => a.zip(b, |x, y| BinaryOp::Less.value(x, y)),
             BinaryOp::LessEqual => a.zip(b, |x, y| BinaryOp::LessEqual.value(x, y)),
             op => a.zip(b, |x, y| op.value(x, y)),

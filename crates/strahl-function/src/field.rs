@@ -51,7 +51,7 @@ pub trait ScalarField: Debug + Send + Sync {
     /// Bounds of the value, and of the derivative along a line on which the arguments change as told; [`Bounds::UNKNOWN`] where the value may
     /// jump or be no number.
     fn rate(&self, arguments: &[Rate]) -> (Bounds, Bounds) {
-        (values_within(self, arguments), Bounds::UNKNOWN)
+        (values_within(self, arguments, |a| a.value), Bounds::UNKNOWN)
     }
 
     /// The value, which must have the bits of [`value`](Self::value), and its partial derivatives by the first arguments, as many as
@@ -74,11 +74,15 @@ pub enum Rates {
     OfBoxes,
 }
 
-/// [`ScalarField::bounds`] for arguments that change along a line.
-pub(crate) fn values_within(field: &(impl ScalarField + ?Sized), arguments: &[Rate]) -> Bounds {
+/// [`ScalarField::bounds`] for arguments of which more than their bounds is known.
+pub(crate) fn values_within<A>(
+    field: &(impl ScalarField + ?Sized),
+    arguments: &[A],
+    bounds: impl Fn(&A) -> Bounds,
+) -> Bounds {
     let mut values = [Bounds::UNKNOWN; limits::PARAMETERS];
     for (value, argument) in values.iter_mut().zip(arguments) {
-        *value = argument.value;
+        *value = bounds(argument);
     }
     field.bounds(&values[..arguments.len().min(limits::PARAMETERS)])
 }

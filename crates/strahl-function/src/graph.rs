@@ -87,6 +87,11 @@ pub struct Graph {
     failure: Option<FunctionError>,
 }
 
+/// Whether an operation is an even power from the second on.
+fn is_even(op: UnaryOp) -> bool {
+    matches!(op, UnaryOp::Power(n) if n >= 2 && n % 2 == 0)
+}
+
 impl Graph {
     /// An empty graph of a function with these parameters.
     pub fn new<S: Into<String>>(parameters: impl IntoIterator<Item = S>) -> Self {
@@ -234,6 +239,11 @@ impl Graph {
             (UnaryOp::Square, Some(Node::Unary(UnaryOp::Neg | UnaryOp::Abs, inner))) => {
                 self.unary(UnaryOp::Square, inner)
             }
+            (UnaryOp::Power(_), Some(Node::Unary(UnaryOp::Neg | UnaryOp::Abs, inner)))
+                if is_even(op) =>
+            {
+                self.unary(op, inner)
+            }
             (UnaryOp::Power(0), _) => self.constant(1.0),
             (UnaryOp::Power(1), _) => a,
             (UnaryOp::Power(2), _) => self.unary(UnaryOp::Square, a),
@@ -283,6 +293,10 @@ impl Graph {
                 // for minus infinity.
                 if is(right, 0.5) {
                     return self.unary(UnaryOp::Sqrt, a);
+                }
+                if is(right, 0.25) {
+                    let root = self.unary(UnaryOp::Sqrt, a);
+                    return self.unary(UnaryOp::Sqrt, root);
                 }
             }
             _ => {}

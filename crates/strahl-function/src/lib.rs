@@ -1,5 +1,5 @@
 //! Mathematical functions of points: built as a graph, compiled to a tape, evaluated at points, over batches of points,
-//! over boxes (with an outward-rounded interval as result), on lines through boxes (with bounds of the derivative along them) and
+//! over boxes (with an outward-rounded interval as result, or a narrower one by affine arithmetic), on lines through boxes (with bounds of the derivative along them) and
 //! with their gradient.
 //!
 //! * [`Graph`] builds a function of named parameters; [`Expr`] is a value in it.
@@ -14,9 +14,10 @@
 //! Nothing runs without end: one evaluation takes at most so many operations as [`Graph::allow`] says. What takes more for
 //! certain can't be built; a loop whose length is known only when it runs and that would take more is NaN.
 //!
-//! All five ways to evaluate run the same instructions, so the value of a batch or of a gradient has the bits of the
+//! All ways to evaluate run the same instructions, so the value of a batch or of a gradient has the bits of the
 //! value at the point, and bounds contain it. Transcendental functions are those of [`strahl_math::det`].
 
+mod affine;
 mod bounds;
 mod build;
 mod compile;

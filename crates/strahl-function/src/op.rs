@@ -1,4 +1,4 @@
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, triangle};
 use strahl_math::det;
 
 /// An operation on one value.
@@ -73,6 +73,8 @@ pub enum BinaryOp {
     Max,
     /// The remainder of truncated division; it has the sign of `a`.
     Mod,
+    /// The triangle wave: the distance of `a` from the nearest multiple of `b`.
+    Triangle,
     /// `a` to the power of `b`.
     Pow,
     /// The angle of the point `(b, a)` in radians.
@@ -235,6 +237,7 @@ impl BinaryOp {
             }
             // The remainder of floating point division is exact, so it is the same on every machine.
             Self::Mod => a % b,
+            Self::Triangle => triangle(a, b),
             Self::Pow => det::pow(a, b),
             Self::Atan2 => det::atan2(a, b),
             Self::Less => boolean(a < b),
@@ -256,6 +259,7 @@ impl BinaryOp {
             Self::Min => a.minimum(b),
             Self::Max => a.maximum(b),
             Self::Mod => a.remainder(b),
+            Self::Triangle => a.triangle(b),
             Self::Pow => a.pow(b),
             Self::Atan2 => a.atan2(b),
             Self::Less => a.less(b, false),
@@ -296,6 +300,11 @@ impl BinaryOp {
                 }
             }
             Self::Mod => (1.0, -(a / b).trunc()),
+            Self::Triangle => {
+                let count = (a / b + 0.5).floor();
+                let slope = UnaryOp::Abs.slope(a - b * count, value);
+                (slope, -slope * count)
+            }
             Self::Pow => (b * det::pow(a, b - 1.0), value * det::ln(a)),
             Self::Atan2 => {
                 let square = a * a + b * b;

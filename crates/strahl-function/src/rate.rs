@@ -74,7 +74,7 @@ impl Rate {
 
 /// The derivative of an operation on values within `a`, which gives values within `value`; nothing for steps.
 #[inline(always)]
-fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
+pub(crate) fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
     let squared = a.square();
     Some(match op {
         UnaryOp::Neg => Bounds::new(-1.0, -1.0),
@@ -110,7 +110,7 @@ fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
 
 /// The rate of an operation on two values that gives values within `value`.
 #[inline(always)]
-fn rate(op: BinaryOp, a: Rate, b: Rate, value: Bounds) -> Bounds {
+pub(crate) fn rate(op: BinaryOp, a: Rate, b: Rate, value: Bounds) -> Bounds {
     match op {
         BinaryOp::Add => a.rate.add(b.rate),
         BinaryOp::Sub => a.rate.sub(b.rate),
@@ -131,6 +131,10 @@ fn rate(op: BinaryOp, a: Rate, b: Rate, value: Bounds) -> Bounds {
         BinaryOp::Mod => match a.value.div(b.value).map_exact(f64::trunc).single() {
             Some(count) => a.rate.sub(b.rate.mul(Bounds::point(count))),
             None => Bounds::UNKNOWN,
+        },
+        BinaryOp::Triangle => match a.value.triangle_slope(b.value) {
+            Some(slope) if b.is_constant() => a.rate.mul(slope),
+            _ => Bounds::UNKNOWN,
         },
         BinaryOp::Pow if b.is_constant() => {
             let less = BinaryOp::Pow.bounds(a.value, b.value.sub(ONE));
@@ -242,7 +246,7 @@ impl Domain for Rate {
     }
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
         if arguments.iter().all(Self::is_constant) {
-            return Self::constant_within(values_within(field, arguments));
+            return Self::constant_within(values_within(field, arguments, |a| a.value));
         }
         let (value, rate) = field.rate(arguments);
         Self::new(value, rate)

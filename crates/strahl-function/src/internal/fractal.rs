@@ -228,7 +228,7 @@ impl ScalarField for NoiseFunction {
     }
 
     fn rate(&self, arguments: &[Rate]) -> (Bounds, Bounds) {
-        let unknown = || (values_within(self, arguments), Bounds::UNKNOWN);
+        let unknown = || (values_within(self, arguments, |a| a.value), Bounds::UNKNOWN);
         let Some((point @ [x, y, z], rest)) = arguments.split_first_chunk() else {
             return unknown();
         };

@@ -39,23 +39,15 @@ pub(super) fn cross_section<'a, 'g>(
     kind.if_zero(a.max(b), round)
 }
 
-/// The cell of a hexagonal tiling that `(x, y)` lies in: the distance from its centre as its edges measure it, and the
-/// coordinates relative to the centre. The centres of neighbours are `sqrt 3` apart, one is the origin, one on the x axis.
-fn hexagon<'a, 'g>(x: Term<'a, 'g>, y: Term<'a, 'g>) -> (Term<'a, 'g>, Term<'a, 'g>, Term<'a, 'g>) {
+/// The two cells of a hexagonal tiling of which `(x, y)` lies in one: for each the distance from its centre as its edges measure it, and the
+/// sizes of the coordinates relative to the centre. The centres of neighbours are `sqrt 3` apart, one is the origin, one on the x axis.
+fn hexagons<'a, 'g>(x: Term<'a, 'g>, y: Term<'a, 'g>) -> [[Term<'a, 'g>; 3]; 2] {
     let root = x.number(3f64.sqrt());
-    let cell = |dx: f64, dy: f64| {
-        let (x, y) = ((x - dx).folded(root), (y - dy).folded(root.number(3.0)));
-        let radius = x.abs().max(x.abs() * 0.5 + y.abs() * 0.75f64.sqrt());
-        (radius, x, y)
-    };
     // Two rectangular lattices make the hexagonal one.
-    let (a, b) = (cell(0.0, 0.0), cell(0.75f64.sqrt(), 1.5));
-    let nearer = a.0 - b.0;
-    (
-        a.0.min(b.0),
-        nearer.if_positive(b.1, a.1),
-        nearer.if_positive(b.2, a.2),
-    )
+    [(0.0, 0.0), (0.75f64.sqrt(), 1.5)].map(|(dx, dy)| {
+        let (x, y) = ((x - dx).triangle(root), (y - dy).triangle(root.number(3.0)));
+        [x.max(x * 0.5 + y * 0.75f64.sqrt()), x, y]
+    })
 }
 
 /// A woven grid of threads.
@@ -67,20 +59,20 @@ fn mesh<'a, 'g>(
         p: [px, pz, width, weave, height, ..],
     }: Arguments<'a, 'g>,
 ) -> Term<'a, 'g> {
-    let pi = std::f64::consts::PI;
-    let (u, v) = (x.over(px), z.over(pz));
-    // A thread along x goes over and under those along z, one after the other; the nearest is one of two.
-    let along_x = |row: Term<'a, 'g>| {
-        let middle = weave * (u * pi).cos() * row.parity();
-        hypot(width * (z - pz * row), height * (y - middle))
+    let turn = x.number(std::f64::consts::PI);
+    // The height of a thread where it crosses the other ones, over and under in turns.
+    let wave = |along: Term<'a, 'g>, distance| weave * (along.over(distance) * turn).cos();
+    let (wave_x, wave_z) = (wave(x, px), wave(z, pz));
+    let thread = |across: Term<'a, 'g>, distance: Term<'a, 'g>, height_above: Term<'a, 'g>| {
+        hypot(
+            width * across.triangle(distance * 2.0),
+            height * height_above,
+        )
     };
-    let along_z = |column: Term<'a, 'g>| {
-        let middle = weave * (v * pi).cos() * column.parity();
-        hypot(width * (x - px * column), height * (y + middle))
-    };
-    let (row, column) = (v.floor(), u.floor());
-    let threads_x = along_x(row).min(along_x(row + 1.0));
-    threads_x.min(along_z(column)).min(along_z(column + 1.0))
+    // Of the threads along x every second one goes over where its neighbours go under.
+    let along_x = thread(z, pz, y - wave_x).min(thread(z - pz, pz, y + wave_x));
+    let along_z = thread(x, px, y + wave_z).min(thread(x - px, px, y - wave_z));
+    along_x.min(along_z)
 }
 
 pub(super) const TABLE: &[Internal] = &[
@@ -209,11 +201,19 @@ pub(super) const TABLE: &[Internal] = &[
         let thickness = half * (z.atan2(x) * 0.5).cos();
         head.min((ring - thickness).max(-z))
     }),
-    solid!("f_hex_x", 1, |Arguments { x, y, .. }| hexagon(x, y).0),
+    solid!("f_hex_x", 1, |Arguments { x, y, .. }| {
+        let [[a, ..], [b, ..]] = hexagons(x, y);
+        a.min(b)
+    }),
+    // The distance from three lines through the centre, which go through the centres of all cells in a row: so lines of the other cell are
+    // farther away.
     solid!("f_hex_y", 1, |Arguments { x, y, .. }| {
-        let (_, x, y) = hexagon(x, y);
-        let (a, b) = (x * 0.75f64.sqrt(), y * 0.5);
-        y.abs().min((a + b).abs()).min((a - b).abs())
+        let [one, other] = hexagons(x, y).map(|[_, x, y]| {
+            let (a, b) = (x * 0.75f64.sqrt(), y * 0.5);
+            // The sizes of a + b and a - b are the same two for all signs of a and b.
+            y.min(a + b).min((a - b).abs())
+        });
+        one.min(other)
     }),
     solid!("f_mesh1", 5, mesh),
     solid!("f_poly4", 5, |Arguments {

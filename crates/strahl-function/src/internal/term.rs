@@ -84,10 +84,14 @@ impl<'a, 'g> Term<'a, 'g> {
         self - period * self.over(period).round()
     }
 
-    /// `-1` for an odd whole number, `1` for an even one.
-    pub(crate) fn parity(self) -> Self {
-        let pairs = (self * 0.5).floor();
-        (self - pairs * 2.0) * -2.0 + 1.0
+    /// The size of what [`folded`](Self::folded) gives. It is continuous, and its bounds are tight.
+    pub(crate) fn triangle(self, period: Self) -> Self {
+        self.with(|g| g.triangle(self.expr, period.expr))
+    }
+
+    /// Whether this is a constant with that value.
+    pub(crate) fn is(self, value: f64) -> bool {
+        self.graph.borrow().known(self.expr) == Some(value)
     }
 
     pub(crate) fn min(self, other: Self) -> Self {

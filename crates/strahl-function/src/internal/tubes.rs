@@ -42,6 +42,20 @@ fn turned<'a, 'g>(
     (a * cos - b * sin, a * sin + b * cos)
 }
 
+/// The radius of a [cross section](cross_section) after a turn; round ones look the same from all sides.
+fn turned_section<'a, 'g>(
+    a: Term<'a, 'g>,
+    b: Term<'a, 'g>,
+    angle: Term<'a, 'g>,
+    kind: Term<'a, 'g>,
+) -> Term<'a, 'g> {
+    if kind.is(1.0) {
+        return hypot(a, b);
+    }
+    let (a, b) = turned(a, b, angle);
+    cross_section(a, b, kind)
+}
+
 /// Tubes that wind around the y axis at a distance; their section is measured in the plane through the axis.
 fn helix1<'a, 'g>(
     Arguments {
@@ -55,10 +69,16 @@ fn helix1<'a, 'g>(
     let sector = count.number(TAU).over(count);
     let turn = z.atan2(x) + period * y;
     // From the nearest tube, which is in the middle of its sector.
-    let along = turn - sector * turn.over(sector).floor() - sector * 0.5;
+    let from_border = turn - sector * 0.5;
+    let along = if angle.is(0.0) || section.is(1.0) {
+        // Sections that are not turned are symmetric.
+        from_border.triangle(sector)
+    } else {
+        from_border.folded(sector)
+    };
     let height = along.over(period).over(stretch);
-    let (a, b) = turned(r - major, height, angle.radians());
-    cross_section(a, b, section).min(r + major) - minor
+    let tube = turned_section(r - major, height, angle.radians(), section);
+    tube.min(r + major) - minor
 }
 
 /// A column around the y axis, shifted from it, whose section turns as it rises. Its last parameter has no effect.
@@ -71,8 +91,12 @@ fn helix2<'a, 'g>(
     }: Arguments<'a, 'g>,
 ) -> Term<'a, 'g> {
     let turn = period * y;
-    let (a, b) = turned(x - major * turn.cos(), z - major * turn.sin(), -turn);
-    cross_section(a, b, section) - minor
+    turned_section(
+        x - major * turn.cos(),
+        z - major * turn.sin(),
+        -turn,
+        section,
+    ) - minor
 }
 
 /// Tubes that wind around a ring about the y axis, at a distance from its circle; their surface may wind, too.
@@ -101,13 +125,16 @@ fn helical_torus<'a, 'g>(
     let out = rho - major;
     let from_circle = hypot(out, y);
     let (alpha, beta) = (x.atan2(z), out.atan2(y));
-    let turn = (around_axis * alpha + around_ring * beta - PI).folded(x.number(2.0 * PI));
+    let (winding, full) = (
+        around_axis * alpha + around_ring * beta - PI,
+        x.number(2.0 * PI),
+    );
     let off = from_circle - distance;
-    let square = off.square() + stretch * turn.square();
+    let square = off.square() + stretch * winding.triangle(full).square();
     // The limit of the tubes on the other side of the axis.
     let across = rho + major - distance;
     let section = square.max(x.number(0.0)).sqrt().min(from_circle + distance);
-    let wave = (twist * alpha + turns * (skew * turn).atan2(off)).cos();
+    let wave = (twist * alpha + turns * (skew * winding.folded(full)).atan2(off)).cos();
     let outside = (section - relief * wave).min(across);
     (-square).if_positive(across, outside) - minor
 }
@@ -122,7 +149,7 @@ fn spiral<'a, 'g>(
     }: Arguments<'a, 'g>,
 ) -> Term<'a, 'g> {
     let turns = (-z).atan2(x) * (1.0 / TAU) + 0.5;
-    let across = (hypot(x, z) - distance * turns).folded(distance);
+    let across = (hypot(x, z) - distance * turns).triangle(distance);
     let centre = length(x, y, z);
     (cross_section(across, y, section).min(centre) - thickness).max(centre - radius)
 }
@@ -140,7 +167,7 @@ fn polytubes<'a, 'g>(
     // A negative distance is one in the opposite direction.
     let zero = x.number(0.0);
     let opposite = distance.if_positive(zero, x.number(std::f64::consts::PI));
-    let angle = (x.atan2(z) + opposite).folded(count.number(TAU).over(count));
+    let angle = (x.atan2(z) + opposite).triangle(count.number(TAU).over(count));
     let (r, distance) = (hypot(x, z), distance.abs());
     hypot(r * angle.cos() - distance, r * angle.sin())
 }
