@@ -76,6 +76,10 @@ pub struct Isosurface {
     /// Of which arguments rates of change can be known.
     rates: Rates,
     octree: Octree,
+    /// How often its cells are halved.
+    levels: u32,
+    /// Whether the function's narrow bounds are worth their time.
+    wants_narrow_bounds: bool,
     /// How far cells are widened when they are examined.
     cell_pad: DVec3,
     /// The octree's bounds, as much wider: points within are in the cells that are found for them.
@@ -103,6 +107,9 @@ const CELL_PAD: f64 = 256.0 * f64::EPSILON;
 
 /// The octree's cells are halved so often.
 const LEVELS: u32 = 6;
+
+/// The same if narrow bounds exclude more cells: then larger ones do.
+const NARROW_LEVELS: u32 = 5;
 
 /// So many cells at most are bounded at once, where the function may be bounded on segments: longer ones go through so many cells of noise that
 /// bounds are too wide.
@@ -151,12 +158,19 @@ impl Isosurface {
             is_bounded,
             trusts_gradient: OnceLock::new(),
             rates,
-            octree: Octree::new(bounds, LEVELS),
+            octree: Octree::new(cube_around(bounds), LEVELS),
+            levels: LEVELS,
+            wants_narrow_bounds: false,
             cell_pad,
             reach: bounds.padded(cell_pad),
         };
         if rates == Rates::OfSegments && !surface.has_rates_in_cells() {
             surface.rates = Rates::Unknown;
+        }
+        if is_bounded && with_workspace(|workspace| surface.gains_by_narrow_bounds(workspace)) {
+            surface.wants_narrow_bounds = true;
+            surface.levels = NARROW_LEVELS;
+            surface.octree = Octree::new(cube_around(bounds), NARROW_LEVELS);
         }
         Ok(surface)
     }
@@ -175,6 +189,24 @@ impl Isosurface {
                 !rate.nan
             })
         })
+    }
+
+    /// Whether narrow bounds of the function are at most half as wide as wide ones in most small cells: then they exclude so many cells near
+    /// the surface that they are worth their time.
+    fn gains_by_narrow_bounds(&self, workspace: &mut Workspace) -> bool {
+        const CELLS: u32 = 32;
+        let bounds = self.container.bounds();
+        let half = DVec3::ONE * (0.5 * self.cell_size());
+        let gains = (0..CELLS).filter(|&number| {
+            let place = trust::place(&bounds, number);
+            let cell = Aabb::new(place - half, place + half);
+            let [wide, narrow] = [
+                self.bounds_within(workspace, &cell),
+                self.narrow_bounds_within(workspace, &cell),
+            ];
+            narrow.max - narrow.min <= 0.5 * (wide.max - wide.min)
+        });
+        2 * gains.count() as u32 > CELLS
     }
 
     /// The function.
@@ -203,6 +235,11 @@ impl Isosurface {
     /// Bounds of the function less the threshold.
     fn bounds_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Bounds {
         self.less_threshold(self.function.bounds(workspace, &sides(cell)))
+    }
+
+    /// The same, narrower and slower.
+    fn narrow_bounds_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Bounds {
+        self.less_threshold(self.function.narrow_bounds(workspace, &sides(cell)))
     }
 
     fn less_threshold(&self, values: Bounds) -> Bounds {
@@ -261,7 +298,15 @@ impl Isosurface {
             return Content::Empty { is_inside: None };
         }
         if !self.trusts_gradient(workspace) {
-            return match side(self.bounds_within(workspace, &cell)) {
+            let wide = self.bounds_within(workspace, &cell);
+            let inside = side(wide).or_else(|| {
+                // In large cells they are hardly narrower.
+                let is_small = cell.size().max_element() < 2.5 * self.cell_size();
+                let is_wanted = is_small && self.wants_narrow_bounds;
+                let narrow = || self.narrow_bounds_within(workspace, &cell);
+                is_wanted.then(narrow).and_then(side)
+            });
+            return match inside {
                 None => Content::Surface,
                 is_inside => Content::Empty { is_inside },
             };
@@ -277,7 +322,7 @@ impl Isosurface {
 
     /// The largest extent of one of the octree's smallest cells.
     fn cell_size(&self) -> f64 {
-        self.size() / f64::from(1_u32 << LEVELS)
+        self.size() / f64::from(1_u32 << self.levels)
     }
 
     /// Parts of a ray that are not longer are not divided, except for rounding.
@@ -456,6 +501,14 @@ impl Isosurface {
         let error = DVec3::splat(off + f64::MIN_POSITIVE) + p.abs() * (4.0 * ROUNDOFF);
         SurfacePoint::bare(p, error, normal)
     }
+}
+
+/// The cube around a box, so that the octree's cells are cubes: flat ones tell no more of a function that changes along all axes alike, but rays
+/// cross more of them. Rays do not enter what is added.
+fn cube_around(bounds: Aabb) -> Aabb {
+    let size = bounds.size();
+    let missing = DVec3::splat(size.max_element()) - size;
+    Aabb::new(bounds.min - missing * 0.5, bounds.max + missing * 0.5)
 }
 
 /// The part of a function's rounding error near a point that comes from the point's.
