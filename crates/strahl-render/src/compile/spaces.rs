@@ -3,8 +3,9 @@ use crate::appearance::Appearances;
 use crate::light_sets::Lit;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
-use crate::uses::InstanceUse;
+use crate::uses::{InstanceUse, MeshUse};
 use std::borrow::Cow;
+use std::sync::Arc;
 use strahl_geometry::{Primitive, Shape};
 use strahl_math::{Aabb, DVec3, Transform};
 
@@ -12,38 +13,53 @@ use strahl_math::{Aabb, DVec3, Transform};
 /// leave it fewer than 7 bits.
 const SMALL_AND_FAR: f64 = 1.0 / (1 << 17) as f64;
 
+/// The extent of a space of meshes, as a fraction of its largest coordinate: meshes that are smaller keep their vertices relative to an anchor
+/// ([`strahl_geometry::MeshData::from_f64`]).
+const FAR_MESHES: f64 = 1.0 / 1024.0;
+
+/// Objects of a group that get a space of their own.
+struct Space {
+    /// The objects, relative to the anchor.
+    group: FlatGroup,
+    anchor: DVec3,
+    /// Where they were in their group.
+    members: Vec<u32>,
+}
+
 /// Moves clusters of small objects far from the origin into spaces of their own: groups whose origin is near them.
 ///
 /// Positions relative to the space's anchor keep all their digits, the f32 boxes of its accelerator are tight, and rays that
 /// start in it keep an origin finer than world coordinates can express. The anchor is a coordinate of the objects themselves,
-/// so moving them is exact.
+/// so moving them is exact. Without a space the boxes around the triangles of a scanned mesh in coordinates of a map would be as
+/// large as the mesh.
 pub(super) fn open_spaces(flat: &mut Flat) {
     let groups = flat.groups.len();
     for index in 0..groups {
-        let clusters = clusters(&flat.groups[index]);
-        if clusters.is_empty() {
-            continue;
-        }
-        let mut moved = vec![None; flat.groups[index].prims.len()];
-        let mut inner_groups = Vec::new();
-        for cluster in clusters {
-            let (inner, anchor) = extract(&mut flat.groups[index], &cluster);
-            for (position, prim) in cluster.iter().enumerate() {
-                moved[*prim as usize] = Some((inner_groups.len(), position == 0));
-            }
-            inner_groups.push((inner, anchor));
-        }
         let first = flat.groups.len() as u32;
         let group = &mut flat.groups[index];
+        let mut spaces: Vec<Space> = clusters(group)
+            .into_iter()
+            .map(|cluster| extract(group, cluster))
+            .collect();
+        spaces.extend(mesh_spaces(group));
+        if spaces.is_empty() {
+            continue;
+        }
+        let mut moved = vec![None; group.prims.len()];
+        for (number, space) in spaces.iter().enumerate() {
+            for (position, prim) in space.members.iter().enumerate() {
+                moved[*prim as usize] = Some((number, position == 0));
+            }
+        }
         let mut prims = RunList::default();
         for (prim, moved) in group.prims.iter().zip(&moved) {
             match moved {
                 None => prims.push(prim),
-                // The cluster takes the place of its first member.
-                Some((cluster, true)) => {
-                    let transform = Transform::translate(inner_groups[*cluster].1);
+                // The space takes the place of its first member.
+                Some((number, true)) => {
+                    let transform = Transform::translate(spaces[*number].anchor);
                     group.instances.push(InstanceUse {
-                        group: first + *cluster as u32,
+                        group: first + *number as u32,
                         transform,
                         lit: Lit::DEFAULT,
                     });
@@ -55,11 +71,62 @@ pub(super) fn open_spaces(flat: &mut Flat) {
         }
         group.prims = prims;
         flat.groups
-            .extend(inner_groups.into_iter().map(|(inner, _)| inner));
+            .extend(spaces.into_iter().map(|space| space.group));
     }
 }
 
-/// The shapes that are small and far, in clusters. Triangles of meshes are relative to an anchor of their mesh already.
+/// Spaces for the meshes that are small and far: those whose vertices are relative to an anchor. Meshes that are near each other share one.
+fn mesh_spaces(group: &FlatGroup) -> Vec<Space> {
+    let mut spaces: Vec<Space> = vec![];
+    // For each mesh its space and its number there.
+    let mut places = vec![None; group.meshes.len()];
+    for (mesh_use, place) in group.meshes.iter().zip(&mut places) {
+        let anchor = mesh_use.mesh.anchor();
+        if anchor == DVec3::ZERO {
+            continue;
+        }
+        let reach = mesh_use.mesh.bounds().max_abs() * FAR_MESHES;
+        let is_near = |space: &Space| (space.anchor - anchor).abs().max_element() < reach;
+        let number = spaces.iter().position(is_near);
+        let at = number.map_or(anchor, |number| spaces[number].anchor);
+        // A mesh that can't be moved stays.
+        let Ok(mesh) = mesh_use.mesh.transformed(&Transform::translate(-at)) else {
+            continue;
+        };
+        let number = number.unwrap_or_else(|| {
+            spaces.push(Space {
+                group: FlatGroup::default(),
+                anchor,
+                members: vec![],
+            });
+            spaces.len() - 1
+        });
+        let meshes = &mut spaces[number].group.meshes;
+        *place = Some((number, meshes.len() as u32));
+        meshes.push(MeshUse {
+            mesh: Arc::new(mesh),
+            appearance: mesh_use.appearance,
+        });
+    }
+    if spaces.is_empty() {
+        return spaces;
+    }
+    for (index, prim) in group.prims.iter().enumerate() {
+        if let PrimKind::Triangle(mesh, triangle) = prim.kind()
+            && let Some((number, mesh)) = places[mesh as usize]
+        {
+            let space = &mut spaces[number];
+            let kind = PrimKind::Triangle(mesh, triangle);
+            let moved = Prim::new(kind, prim.visible, prim.flags);
+            space.group.prims.push(moved);
+            space.members.push(index as u32);
+        }
+    }
+    spaces.retain(|space| !space.members.is_empty());
+    spaces
+}
+
+/// The shapes that are small and far, in clusters; meshes have [spaces of their own](mesh_spaces).
 fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
     let mut small: Vec<(u32, Aabb)> = Vec::new();
     for (index, prim) in group.prims.iter().enumerate() {
@@ -125,10 +192,10 @@ fn split_at_gaps(mut list: Vec<(u32, Aabb)>, axis: usize) -> Vec<Vec<(u32, Aabb)
 }
 
 /// Moves shapes from a group into a new one around an anchor.
-fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
+fn extract(group: &FlatGroup, members: Vec<u32>) -> Space {
     let mut inner = FlatGroup::default();
     let mut anchor = None;
-    for id in cluster {
+    for id in &members {
         let prim = group.prims.at(*id);
         let Some(shape) = shape(group, prim) else {
             continue;
@@ -149,5 +216,9 @@ fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
             used.inside = inside.moved(&home).map(Box::new);
         }
     }
-    (inner, anchor.unwrap_or_default())
+    Space {
+        group: inner,
+        anchor: anchor.unwrap_or_default(),
+        members,
+    }
 }
