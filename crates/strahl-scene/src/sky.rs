@@ -21,9 +21,9 @@ pub struct SkySphere {
 impl SkySphere {
     /// The colour seen along a direction of any length: that of the pigments at the end of the unit vector.
     ///
-    /// As measured: in version 3.7 a layer multiplies everything below it by `rgb · filter + transmit`. Before, a layer
-    /// multiplies the layers below it by `filter + transmit`, without tinting them, while `behind` is multiplied by the product
-    /// of all `rgb · filter` plus that of all `transmit`.
+    /// As measured: in version 3.7 a layer multiplies everything below it by `rgb · filter + transmit`. Before, a layer is
+    /// multiplied by the product of `filter` of all layers above it plus that of `transmit`, without a tint, while `behind` is
+    /// multiplied by the product of all `rgb · filter` plus that of all `transmit`.
     pub fn along(&self, direction: DVec3) -> Color {
         self.seen(direction).0
     }
@@ -40,16 +40,17 @@ impl SkySphere {
             .point_to_object(direction.normalize_or(DVec3::Y));
         let point = TexturePoint::in_space(at);
         let (mut seen, mut passes) = (Color::BLACK, Color::WHITE);
-        let (mut untinted, mut tint, mut clear) = (1.0, Color::WHITE, 1.0);
-        for layer in self.layers.iter().rev() {
+        let (mut filter, mut tint, mut clear) = (1.0, Color::WHITE, 1.0);
+        for (above, layer) in self.layers.iter().rev().enumerate() {
             let color: ColorFt = layer.color_at(&point);
             let light = color.rgb * self.emission;
             seen += match self.tints_layers {
                 true => light * passes * color.opacity(),
-                false => light * (color.opacity() * untinted),
+                false if above == 0 => light * color.opacity(),
+                false => light * (color.opacity() * (filter + clear)),
             };
             passes *= color.rgb * color.filter + Color::gray(color.transmit);
-            untinted *= color.filter + color.transmit;
+            filter *= color.filter;
             tint *= color.rgb * color.filter;
             clear *= color.transmit;
         }
@@ -139,6 +140,46 @@ mod tests {
             assert!((seen - expected).abs() < 1e-9, "{seen}");
         }
     }
+
+    #[test]
+    fn layers_are_as_bright_as_what_all_above_them_filter_and_transmit() {
+        let layer = |[red, green, blue, filter, transmit]: [f64; 5]| {
+            ColorFt {
+                rgb: Color::new(red, green, blue),
+                filter,
+                transmit,
+            }
+            .into()
+        };
+        let upper = [
+            layer([0.2, 0.4, 0.6, 0.3, 0.5]),
+            layer([1.0, 0.5, 0.5, 0.6, 0.3]),
+            layer([0.6, 0.9, 0.5, 0.2, 0.5]),
+        ];
+        let opaque = layer([0.5, 1.0, 0.2, 0.0, 0.0]);
+        // As POV-Ray renders them, in steps of 1/255.
+        for (layers, behind, expected) in [
+            (upper.to_vec(), [0.9, 0.8, 0.3], [156.0, 168.0, 135.0]),
+            (
+                [&[opaque], &upper[..]].concat(),
+                [0.9, 0.8, 0.3],
+                [153.0, 177.0, 134.0],
+            ),
+        ] {
+            let sky = SkySphere {
+                layers,
+                transform: Transform::IDENTITY,
+                emission: Color::WHITE,
+                behind: Color::from(behind),
+                tints_layers: false,
+            };
+            for (seen, expected) in sky.along(DVec3::X).to_array().into_iter().zip(expected) {
+                let code = 255.0 * (1.055 * seen.powf(1.0 / 2.4) - 0.055);
+                assert!((code - expected).abs() < 1.0, "{code} {expected}");
+            }
+        }
+    }
+
     /// As POV-Ray 3.7 renders it, in steps of 1/255.
     #[test]
     fn filtering_layers_tint_those_below_under_version_3_7() {

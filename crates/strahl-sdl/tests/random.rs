@@ -73,4 +73,6 @@ groups! {
     facets_are_cells_of_places_or_of_directions,
     parts_of_the_spectrum_have_the_weight_of_the_whole,
     fresnel_takes_the_index_of_white_light,
+    beams_end_at_their_falloff,
+    dispersion_needs_an_index_of_refraction,
 }

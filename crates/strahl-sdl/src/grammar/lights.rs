@@ -182,13 +182,19 @@ impl Draft {
         let radians = |degrees: f64| det::cos(degrees.to_radians());
         match self.form {
             _ if direction == DVec3::ZERO => LightKind::Point { position },
-            Form::Cylinder => LightKind::Beam {
-                position,
-                direction,
-                inner: self.radius.unwrap_or(0.75),
-                outer: self.falloff.unwrap_or(1.0),
-                tightness: self.tightness,
-            },
+            Form::Cylinder => {
+                let outer = self.falloff.unwrap_or(1.0);
+                let inner = self.radius.unwrap_or(0.75);
+                // The beam ends at its falloff, sharply if its radius is larger or none (measured).
+                let is_soft = inner > 0.0 && inner < outer;
+                LightKind::Beam {
+                    position,
+                    direction,
+                    inner: if is_soft { inner } else { outer },
+                    outer,
+                    tightness: self.tightness,
+                }
+            }
             // For a parallel light, every point in front of its plane is in the middle of the cone. As in POV-Ray (measured) light without
             // shadows and that of no cone is behind the plane too.
             Form::Spot if self.parallel && !self.shadowless => LightKind::Beam {

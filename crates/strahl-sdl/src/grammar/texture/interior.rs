@@ -14,11 +14,14 @@ impl Parser<'_> {
                 _ => None,
             })?;
             let mut interior = named.as_deref().or(base).copied().unwrap_or_default();
+            let mut refracts = interior.ior != Interior::default().ior;
+            let mut dispersion = None;
             p.items("`interior`", |p, token| {
                 match token.word() {
                     Some(Word::Ior) => {
                         p.take(token)?;
                         interior.ior = p.positive("the index of refraction")?;
+                        refracts = true;
                     }
                     Some(Word::FadeDistance) => {
                         p.take(token)?;
@@ -35,6 +38,7 @@ impl Parser<'_> {
                     Some(Word::Dispersion) => {
                         p.take(token)?;
                         interior.dispersion = p.positive("dispersion")?;
+                        dispersion = Some(p.place_of(token));
                     }
                     Some(Word::Caustics) => {
                         p.take(token)?;
@@ -56,6 +60,15 @@ impl Parser<'_> {
                 }
                 Ok(())
             })?;
+            if let Some(place) = dispersion.filter(|_| !refracts) {
+                // As measured.
+                interior.dispersion = Interior::default().dispersion;
+                p.warn_hint(
+                    place,
+                    "`dispersion` has no effect in an interior without `ior`",
+                    "state the index of refraction, such as `ior 1.5`",
+                );
+            }
             Ok(interior)
         })
     }

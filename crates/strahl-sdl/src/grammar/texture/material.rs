@@ -77,7 +77,10 @@ impl Texture {
             return self.interior.clone();
         }
         let mut interior = self.interior.as_deref().copied().unwrap_or_default();
-        interior.ior = finish.ior.unwrap_or(interior.ior);
+        if let Some(ior) = finish.ior {
+            // It replaces the dispersion, too (measured).
+            (interior.ior, interior.dispersion) = (ior, 1.0);
+        }
         if let Some(exponent) = finish.caustics {
             // There it is the exponent itself (measured).
             interior.caustics = exponent / Interior::CAUSTICS_EXPONENT;
