@@ -39,7 +39,18 @@ impl Word<'_> {
     }
 }
 
+/// The text without the byte order mark that many programs on Windows begin texts in UTF-8 with.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 impl<'a> Text<'a> {
+    /// A text; a byte order mark at its begin is no part of it.
+    pub(crate) fn new(bytes: &'a [u8], name: &'a str, file: FileId) -> Self {
+        let bytes = without_mark(bytes);
+        Self { bytes, name, file }
+    }
+
     /// The words of the text from byte `start` in line `line`.
     pub(crate) fn words(self, start: usize, line: u32) -> Words<'a> {
         Words {
@@ -443,11 +454,7 @@ mod tests {
     use super::*;
 
     fn text(bytes: &[u8]) -> Text<'_> {
-        Text {
-            bytes,
-            name: "a.txt",
-            file: FileId(0),
-        }
+        Text::new(bytes, "a.txt", FileId(0))
     }
 
     #[test]

@@ -47,11 +47,7 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
 /// [`read`] with parts of another size, which does not change the result.
 fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Block>) -> Scene {
     let mut scene = Scene::default();
-    let text = Text {
-        bytes: input.bytes,
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
+    let text = Text::new(input.bytes, input.name, scene.sources.add(input.name));
     if text.refuse_binary("an OBJ file", report) {
         return scene;
     }
@@ -288,11 +284,7 @@ impl<'a> Reader<'a, '_> {
             Some(folder) => folder.shown(path),
             None => path.to_owned(),
         };
-        let text = Text {
-            bytes,
-            name: &shown,
-            file: self.scene.sources.add(&shown),
-        };
+        let text = Text::new(bytes, &shown, self.scene.sources.add(&shown));
         for material in mtl::read(text, &mut self.textures, self.report) {
             // The first of several materials with the same name counts, as in other programs.
             self.materials

@@ -31,11 +31,7 @@ use strahl_scene::{Diagnostic, Object, Scene};
 /// Reads a mesh; errors and warnings go to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let mut scene = Scene::default();
-    let text = Text {
-        bytes: input.bytes,
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
+    let text = Text::new(input.bytes, input.name, scene.sources.add(input.name));
     if let Err(problem) = read_mesh(&text, &mut scene, report) {
         report.error(|| *problem);
     }

@@ -29,7 +29,6 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let expected = expected
         .map(|count| HEADER as u64 + TRIANGLE as u64 * u64::from(u32::from_le_bytes(*count)));
     let size = input.bytes.len() as u64;
-    let begins_with_solid = begins_with_solid(input.bytes);
     // Some programs fill the last block of a text with zeros.
     let zeros = input
         .bytes
@@ -37,11 +36,9 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
         .rev()
         .take_while(|byte| **byte == 0)
         .count();
-    let text = Text {
-        bytes: &input.bytes[..input.bytes.len() - zeros],
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
+    let text = &input.bytes[..input.bytes.len() - zeros];
+    let text = Text::new(text, input.name, scene.sources.add(input.name));
+    let begins_with_solid = begins_with_solid(text.bytes);
     let is_ascii = expected != Some(size) && begins_with_solid && !text.is_binary();
     match expected {
         _ if is_ascii => {

@@ -134,6 +134,13 @@ fn zeros_behind_a_text_are_ignored_with_a_warning() {
 }
 
 #[test]
+fn a_byte_order_mark_in_a_binary_header_is_one_of_its_bytes() {
+    let loaded = load(binary("\u{feff}made by a test", &TETRAHEDRON));
+    assert_eq!(messages(&loaded), [""; 0]);
+    assert_eq!(meshes(&loaded)[0].1.triangle_count(), 4);
+}
+
+#[test]
 fn damaged_binary_files_are_named() {
     let mut cut = binary("", &TETRAHEDRON);
     cut.truncate(cut.len() - 60);

@@ -54,11 +54,7 @@ pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
             return scene;
         }
     };
-    let text = Text {
-        bytes: json,
-        name: input.name,
-        file,
-    };
+    let text = Text::new(json, input.name, file);
     let Some(root) = root(text, report) else {
         return scene;
     };
@@ -136,13 +132,7 @@ fn number(header: &[u8; 8], at: usize) -> u32 {
 
 /// Reads and checks the JSON.
 fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
-    // Some programs write a byte order mark, which JSON does not allow.
-    let bytes = text
-        .bytes
-        .strip_prefix(b"\xef\xbb\xbf")
-        .unwrap_or(text.bytes);
-    let text = Text { bytes, ..text };
-    let mut root = match Root::from_slice(bytes) {
+    let mut root = match Root::from_slice(text.bytes) {
         Ok(root) => root,
         Err(error) => {
             report.error(|| syntax_error(text, &error));
