@@ -189,9 +189,12 @@ fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
         JsonPath::new,
         &mut |path: &dyn Fn() -> JsonPath, error: Error| {
             let path = path();
-            // Missing bounds are harmless here.
+            // Bounds are not needed, and a texture without a picture is left out where it is used.
+            let field = path.as_str();
             let harmless = error == Error::Missing
-                && (path.as_str().ends_with(".min") || path.as_str().ends_with(".max"));
+                && (field.ends_with(".min")
+                    || field.ends_with(".max")
+                    || (field.starts_with("textures[") && field.ends_with(".source")));
             if !harmless {
                 report.error(|| {
                     Diagnostic::error(format!("`{}`: {path}: {}", text.name, in_words(error)))

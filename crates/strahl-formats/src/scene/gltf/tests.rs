@@ -509,6 +509,35 @@ fn pictures_that_cannot_be_had_are_warnings() {
 }
 
 #[test]
+fn a_texture_without_a_source_is_left_out() {
+    let emissive = r#"{"emissiveTexture":{"index":0},"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#;
+    for (texture, why) in [
+        ("{}", "it has no `source`"),
+        (
+            r#"{"extensions":{"KHR_texture_basisu":{"source":0}}}"#,
+            "it has a picture only by an extension that is not supported: `KHR_texture_basisu`",
+        ),
+    ] {
+        let rest = format!(r#","images":[{}],"textures":[{texture}]"#, picture());
+        let loaded = load(&with_material(emissive, &rest));
+        assert_eq!(
+            messages(&loaded),
+            [format!("warning: `a.gltf`: texture 0 is left out: {why}")]
+        );
+        let scene = loaded.scene.expect("a warning only");
+        let material = scene.objects.0[0].material.as_ref().expect("one");
+        assert!(pbr(material).textures.base_color.is_none());
+    }
+    // A number of a picture that does not exist is an error as before.
+    let wrong = load(&with_material(emissive, r#","textures":[{"source":3}]"#));
+    assert!(
+        messages(&wrong)[0].contains("textures[0].source: the index is out of range"),
+        "{:?}",
+        messages(&wrong)
+    );
+}
+
+#[test]
 fn files_beside_the_scene_are_read() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::create_dir(folder.path().join("my data")).expect("made");
