@@ -660,11 +660,41 @@ fn what_is_no_gltf_is_one_error() {
         messages(&draco),
         [
             "error: `a.gltf` needs extensions that are not supported: `KHR_draco_mesh_compression`\n  \
-          = help: export it without them; compressed meshes and textures are not supported"
+          = help: export it without compression of meshes"
         ]
     );
     let fine = load(r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_volume"]}"#);
     assert_eq!(messages(&fine), ["warning: `a.gltf` has no objects"]);
+}
+
+#[test]
+fn extensions_that_are_ignored_are_named() {
+    let used =
+        |names: &str| with_nodes(r#"{"mesh":0}"#, &format!(r#","extensionsUsed":[{names}]"#));
+    let loaded = load(&used(
+        r#""KHR_texture_transform","KHR_materials_sheen","KHR_materials_pbrSpecularGlossiness","KHR_materials_sheen","KHR_xmp_json_ld""#,
+    ));
+    assert!(loaded.scene.is_some());
+    assert_eq!(
+        messages(&loaded),
+        [
+            "warning: `a.gltf`: extensions that are not supported are ignored: `KHR_materials_pbrSpecularGlossiness`, `KHR_materials_sheen`"
+        ]
+    );
+    let many: Vec<_> = (10..22).map(|i| format!(r#""X_{i}""#)).collect();
+    assert!(messages(&load(&used(&many.join(","))))[0].ends_with("`X_19`, ..."));
+    // The reason fits the extension.
+    for (name, hint) in [
+        ("EXT_texture_webp", "export it with pictures as PNG or JPEG"),
+        (
+            "KHR_materials_clearcoat",
+            "take their names out of `extensionsRequired`",
+        ),
+    ] {
+        let json = format!(r#"{{"asset":{{"version":"2.0"}},"extensionsRequired":["{name}"]}}"#);
+        let all = messages(&load(&json));
+        assert!(all.len() == 1 && all[0].contains(hint), "{all:?}");
+    }
 }
 
 #[test]
