@@ -413,6 +413,18 @@ fn short_number(text: &[u8]) -> Option<(f64, usize)> {
     }
 }
 
+/// What a word is that Rust does not read as a number: C libraries print NaN and infinity like `-nan(ind)` and `1.#QNAN`, too.
+#[cold]
+fn no_number(word: &[u8]) -> NumberError {
+    let word = word.to_ascii_lowercase();
+    let digits = word.strip_prefix(b"-").unwrap_or(&word);
+    if digits.starts_with(b"nan(") || digits.starts_with(b"1.#") {
+        NumberError::NotFinite
+    } else {
+        NumberError::NotANumber
+    }
+}
+
 /// A finite f64, the nearest to what is written.
 pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
     // Nearly all numbers are short ones.
@@ -422,7 +434,7 @@ pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
         return Ok(value);
     }
     let text = std::str::from_utf8(word).map_err(|_| NumberError::NotANumber)?;
-    let value: f64 = text.parse().map_err(|_| NumberError::NotANumber)?;
+    let value: f64 = text.parse().map_err(|_| no_number(word))?;
     if value.is_finite() {
         Ok(value)
     } else {
@@ -433,7 +445,7 @@ pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
 /// A finite f32, the nearest to what is written.
 pub(crate) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
     let text = std::str::from_utf8(word).map_err(|_| NumberError::NotANumber)?;
-    let value: f32 = text.parse().map_err(|_| NumberError::NotANumber)?;
+    let value: f32 = text.parse().map_err(|_| no_number(word))?;
     if value.is_finite() {
         Ok(value)
     } else {
@@ -522,7 +534,16 @@ mod tests {
     fn numbers_are_finite() {
         assert_eq!(parse_f64(b"-2.5e-3"), Ok(-2.5e-3));
         assert_eq!(parse_f32(b"0.1"), Ok(0.1));
-        for word in ["nan", "inf", "-Infinity", "1e999"] {
+        for word in [
+            "nan",
+            "inf",
+            "-Infinity",
+            "1e999",
+            "-nan(ind)",
+            "NaN(0x1)",
+            "-1.#IND00",
+            "1.#INF",
+        ] {
             assert_eq!(
                 parse_f64(word.as_bytes()),
                 Err(NumberError::NotFinite),

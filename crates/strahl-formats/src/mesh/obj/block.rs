@@ -1,7 +1,7 @@
 use super::faces::{Counts, RawCorner};
 use crate::input::ahead::{Piece, Statements, read_statements};
 use crate::input::report::Fallible;
-use crate::input::text::{Text, Word, Words, parse_f64};
+use crate::input::text::{NumberError, Text, Word, Words, parse_f64};
 use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 use strahl_scene::Diagnostic;
@@ -151,22 +151,41 @@ impl<'a> Parser<'a> {
                 let position = self.point()?;
                 self.weight();
                 self.block.positions.push(position);
-                return Ok(());
+                if position.is_finite() {
+                    return Ok(());
+                }
+                ignored(
+                    word,
+                    "the position of a vertex is not a finite number: no face may use it",
+                )
             }
             b"vn" => {
                 let normal = self.point()?;
-                self.block.normals.push(normal);
-                return Ok(());
+                if normal.is_finite() {
+                    self.block.normals.push(normal);
+                    return Ok(());
+                }
+                self.block.normals.push(DVec3::ZERO);
+                ignored(word, "a normal that is not finite counts as none")
             }
             b"vt" => {
-                let u = self.number("u")?;
+                let u = self.any_number("u")?;
                 let v = if self.words.peek_in_line().is_some() {
-                    self.number("v")?
+                    self.any_number("v")?
                 } else {
                     0.0
                 };
-                self.block.uvs.push(DVec2::new(u, 1.0 - v));
-                return Ok(());
+                let uv = DVec2::new(u, 1.0 - v);
+                // Meshes keep them in single precision.
+                if uv.as_vec2().is_finite() {
+                    self.block.uvs.push(uv);
+                    return Ok(());
+                }
+                self.block.uvs.push(DVec2::ZERO);
+                ignored(
+                    word,
+                    "texture coordinates that are not finite count as none",
+                )
             }
             b"f" => {
                 let before = self.block.corners.len();
@@ -266,9 +285,9 @@ impl<'a> Parser<'a> {
 
     fn point(&mut self) -> Fallible<DVec3> {
         Ok(DVec3::new(
-            self.number("x")?,
-            self.number("y")?,
-            self.number("z")?,
+            self.any_number("x")?,
+            self.any_number("y")?,
+            self.any_number("z")?,
         ))
     }
 
@@ -298,21 +317,38 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// A finite number.
     pub(super) fn number(&mut self, what: &str) -> Fallible<f64> {
         if let Some(number) = self.words.short_number_in_line() {
             return Ok(number);
         }
-        let Some(word) = self.words.next_in_line() else {
-            return Err(Box::new(
-                self.words.expected_in_line(&format!("a number ({what})")),
-            ));
-        };
-        parse_f64(word.bytes).map_err(|e| {
-            Box::new(
-                self.text
-                    .at(&word, e.describe(&word, &format!("a number ({what})"))),
-            )
-        })
+        let word = self.number_word(what)?;
+        parse_f64(word.bytes).map_err(|e| self.no_number(&word, e, what))
+    }
+
+    /// A number; NaN for one that is not finite.
+    fn any_number(&mut self, what: &str) -> Fallible<f64> {
+        if let Some(number) = self.words.short_number_in_line() {
+            return Ok(number);
+        }
+        let word = self.number_word(what)?;
+        match parse_f64(word.bytes) {
+            Ok(number) => Ok(number),
+            Err(NumberError::NotFinite) => Ok(f64::NAN),
+            Err(e) => Err(self.no_number(&word, e, what)),
+        }
+    }
+
+    fn number_word(&mut self, what: &str) -> Fallible<Word<'a>> {
+        self.words
+            .next_in_line()
+            .ok_or_else(|| Box::new(self.words.expected_in_line(&format!("a number ({what})"))))
+    }
+
+    #[cold]
+    fn no_number(&self, word: &Word<'_>, error: NumberError, what: &str) -> Box<Diagnostic> {
+        let problem = error.describe(word, &format!("a number ({what})"));
+        Box::new(self.text.at(word, problem))
     }
 }
 

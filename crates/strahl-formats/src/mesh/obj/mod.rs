@@ -212,6 +212,9 @@ impl<'a> Reader<'a, '_> {
             }
         }
         if let Err(why) = self.faces.add(&self.current, self.smoothing, line) {
+            if let Some((corner, position)) = self.faces.not_finite() {
+                return Err(self.not_finite(start, line, corner, position));
+            }
             let place = Place {
                 start,
                 length: 1,
@@ -235,6 +238,21 @@ impl<'a> Reader<'a, '_> {
             }
         }
         Box::new(words.expected_in_line("a corner"))
+    }
+
+    /// The error of a face one of whose corners has no position.
+    #[cold]
+    fn not_finite(&self, start: usize, line: u32, corner: usize, position: u32) -> Box<Diagnostic> {
+        let mut words = self.text.words(start, line).with_continuation();
+        for _ in 0..=corner {
+            words.next();
+        }
+        let number = u64::from(position) + 1;
+        let problem = format!("the position of vertex {number} is not a finite number");
+        Box::new(match words.next() {
+            Some(word) => self.text.at(&word, Diagnostic::error(problem)),
+            None => Diagnostic::error(problem),
+        })
     }
 
     /// Reads material libraries. A name may have blanks, so the whole line is tried before its words.

@@ -158,11 +158,36 @@ fn errors_show_the_place_and_reading_goes_on() {
             "error: vertex 0 does not exist: OBJ counts from 1",
             "error: expected a corner such as `1`, `1/2`, `1//3` or `1/2/3`, found `1/2/3/4`",
             "error: expected the number of a vertex, found `a`",
-            "error: expected a number (z), found `inf`, which is not a finite number",
             "error: expected the number of a smoothing group, or `off`, found `loud`",
-            "error: vertex -9 does not exist: there are 4 so far",
+            "error: vertex -9 does not exist: there are 5 so far",
             "error: texture coordinate 7 does not exist: there are 0 so far",
         ]
+    );
+}
+
+#[test]
+fn only_faces_need_finite_positions() {
+    let odd = "v nan 0 0\nvn -nan(ind) 0 1\nvn 1 1.#QNAN 0\nvt 0 inf\nvt 1e200 0\n";
+    let loaded = load(&format!("{odd}{SQUARE}f 2/1/1 3/2/2 4/1/1\n"));
+    assert_eq!(
+        loaded
+            .diagnostics
+            .iter()
+            .map(|d| d.message.as_str())
+            .collect::<Vec<_>>(),
+        [
+            "the position of a vertex is not a finite number: no face may use it",
+            "a normal that is not finite counts as none (2 times, this is the first)",
+            "texture coordinates that are not finite count as none (2 times, this is the first)",
+        ]
+    );
+    let scene = loaded.scene.expect("warnings only");
+    let point = look_down(&mesh(&scene.objects.0[0]), 0.75, 0.25);
+    assert_eq!((point.n_shade, point.uv), (DVec3::Z, DVec2::ZERO));
+    let used = load(&format!("{odd}{SQUARE}f 2 3 4 -5\n"));
+    assert_eq!(
+        messages(&used)[0],
+        "error: the position of vertex 1 is not a finite number\n  --> part.obj:10:9\n   |\n10 | f 2 3 4 -5\n   |         ^^"
     );
 }
 

@@ -30,8 +30,8 @@ use gltf_json::validation::{Error, Validate};
 use gltf_json::{Path as JsonPath, Root};
 use strahl_scene::{Diagnostic, Scene};
 
-/// The extensions that are understood, or may be ignored without harm even if they are required: those of the first variant
-/// of materials and of notes about the file.
+/// The extensions that are understood, or may be ignored without harm even if they are required: those of other variants
+/// of materials, and of notes about the file.
 const EXTENSIONS: [&str; 11] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",

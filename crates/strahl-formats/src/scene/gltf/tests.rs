@@ -164,6 +164,34 @@ fn sparse_and_normalized_accessors_are_read() {
     );
 }
 
+#[test]
+fn normals_that_are_not_finite_count_as_none() {
+    // The triangle uses vertices 1, 2 and 3.
+    let mut buffer = square();
+    let (nan, z) = (f32::NAN, [0.0, 0.0, 1.0]);
+    buffer.extend(floats([[nan; 3], z, z, [0.0, nan, 0.0]].as_flattened()));
+    buffer.extend(floats(&[0.0, 0.0, f32::INFINITY, 0.0, 0.5, 0.5, 1.0, 1.0]));
+    buffer.extend([1, 2, 3, 0]);
+    let accessors = format!(
+        r#"{POSITIONS},{{"bufferView":1,"componentType":5126,"count":4,"type":"VEC3"}},
+        {{"bufferView":2,"componentType":5126,"count":4,"type":"VEC2"}},{{"bufferView":3,"componentType":5121,"count":3,"type":"SCALAR"}}"#
+    );
+    let rest = format!(
+        r#""meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"indices":3}}]}}],{ONE_NODE}"#
+    );
+    let loaded = load(&file(&buffer, &[0, 48, 96, 128], &accessors, &rest));
+    assert_eq!(
+        messages(&loaded),
+        [
+            "warning: `a.gltf`: texture coordinates that are not finite count as none, as of vertex 1",
+            "warning: `a.gltf`: normals that are not finite count as none, as of vertex 3",
+        ]
+    );
+    let scene = loaded.scene.expect("warnings only");
+    let corner = mesh(&scene.objects.0[0]).surface_at_element(0, [0.0, 1.0]);
+    assert_eq!((corner.n_shade, corner.uv), (DVec3::Z, DVec2::ONE));
+}
+
 const TRIANGLE: &str = r#""meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}]"#;
 const THREE: &str =
     r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}"#;
