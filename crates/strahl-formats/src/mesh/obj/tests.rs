@@ -350,8 +350,11 @@ fn what_libraries_lack_is_a_warning() {
 }
 
 #[test]
-fn errors_in_libraries_are_placed_there() {
-    let loaded = with_library("Kd 1 1 1\nnewmtl m\nKd 1 x 1\nd 2\nNi\nKs -1", "f 1 2 3\n");
+fn mistakes_in_libraries_are_warnings_that_are_placed_there() {
+    let loaded = with_library(
+        "Kd 1 1 1\nnewmtl m\nKd 1 x 1\nd 2\nNi\nKs -1",
+        "usemtl m\nf 1 2 3\n",
+    );
     let firsts: Vec<_> = loaded
         .diagnostics
         .iter()
@@ -360,14 +363,45 @@ fn errors_in_libraries_are_placed_there() {
     assert_eq!(
         firsts,
         [
-            "expected `newmtl`, found `Kd`",
-            "expected a number (a part of a colour), found `x`",
-            "d must be between 0 and 1, found `2`",
-            "expected a number (Ni, the index of refraction,), found the end of the line",
-            "a part of a colour must be at least 0, found `-1`",
+            "what comes before the first `newmtl` is ignored",
+            "expected a number (a part of a colour), found `x`: the statement is ignored (2 times, this is the first)",
+            "d must be between 0 and 1, found `2`: it counts as 1",
+            "a part of a colour must be at least 0, found `-1`: it counts as 0",
         ]
     );
     assert!(messages(&loaded)[1].contains("my colours.mtl:3:6\n"));
+    assert!(loaded.scene.is_some());
+}
+
+#[test]
+fn odd_values_of_materials_leave_something_sensible() {
+    let odd = |mtl: &str| {
+        let loaded = with_library(&format!("newmtl m\n{mtl}"), "usemtl m\nf 1 2 3\n");
+        assert_eq!(messages(&loaded).len(), 1, "{mtl}: {:?}", messages(&loaded));
+        let scene = loaded.scene.expect("warnings only");
+        Material::clone(scene.objects.0[0].material.as_ref().expect("found"))
+    };
+    let plain = material("Kd 0.5");
+    // Blender's hardness of 0.
+    assert_eq!(odd("Ns -1.960784").finish.shininess, 0.0);
+    for mtl in [
+        "Ns nan",
+        "Kd",
+        "Kd 1 1 x",
+        "Ks -1 0 0",
+        "d 1.000001",
+        "Tr -0.1",
+        "illum 11",
+        "illum -1",
+        "map_Kd",
+        "map_Kd -clamp on",
+        "map_d",
+        "Ni 0",
+    ] {
+        assert_eq!(odd(&format!("Kd 0.5\n{mtl}")), plain, "{mtl}");
+    }
+    assert_eq!(odd("illum 7\nNi 0").eta, 1.5);
+    assert!(odd("map_Kd -foo 1 0.5 maps/step.pgm").pbr.is_some());
 }
 
 /// Valid and invalid statements.
