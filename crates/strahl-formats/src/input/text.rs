@@ -167,6 +167,31 @@ impl<'a> Words<'a> {
         self.word()
     }
 
+    /// The next word of the line that ends where a comment begins, even without a blank before it: for numbers, in which no
+    /// name can have such a sign.
+    pub(crate) fn next_uncommented(&mut self) -> Option<Word<'a>> {
+        let word = self.next_in_line()?;
+        Some(self.uncommented(word))
+    }
+
+    /// The part of the word just taken that is not in a comment; the comment is next then.
+    pub(crate) fn uncommented(&mut self, mut word: Word<'a>) -> Word<'a> {
+        let comment = self
+            .comment
+            .and_then(|comment| word.bytes.iter().position(|b| *b == comment));
+        // That of `1.#QNAN` is none.
+        let is_nan = |at: usize| {
+            word.bytes[..at].ends_with(b"1.")
+                && word.bytes.get(at + 1).is_some_and(u8::is_ascii_uppercase)
+        };
+        if let Some(length) = comment.filter(|at| !is_nan(*at)) {
+            word.bytes = &word.bytes[..length];
+            self.at = word.start + length;
+            self.last = Some(word);
+        }
+        word
+    }
+
     /// The next word as a number, if it is one of not too many digits; if it is anything else, nothing is taken. What
     /// [`parse_f64`] would say of the word, without looking for its end first.
     #[inline]
@@ -478,6 +503,26 @@ mod tests {
         }
         let expected = [("a", 1), ("b", 1), ("d", 3), ("e#f", 5)];
         assert_eq!(all, expected.map(|(w, l)| (w.to_owned(), l)));
+    }
+
+    #[test]
+    fn a_comment_may_touch_a_number() {
+        let mut words = text(b"1 2#3 4\n5 #").words(0, 1);
+        words.next();
+        let two = words.next_uncommented().map(|w| w.shown());
+        assert_eq!(
+            (two.as_deref(), words.next_uncommented()),
+            (Some("2"), None)
+        );
+        assert_eq!(words.next().map(|w| w.shown()).as_deref(), Some("5"));
+        assert_eq!(words.next_uncommented(), None);
+        let nan = text(b"-1.#IND").words(0, 1).next_uncommented();
+        assert_eq!(nan.map(|w| w.bytes), Some(b"-1.#IND".as_slice()));
+        let mut plain = text(b"1#2").words(0, 1).without_comments();
+        assert_eq!(
+            plain.next_uncommented().map(|w| w.bytes),
+            Some(b"1#2".as_slice())
+        );
     }
 
     #[test]

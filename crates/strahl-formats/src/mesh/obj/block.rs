@@ -187,20 +187,26 @@ impl<'a> Parser<'a> {
                     "texture coordinates that are not finite count as none",
                 )
             }
-            b"f" => {
+            // `fo` is the old name of a face.
+            b"f" | b"fo" => {
                 let before = self.block.corners.len();
                 let face = self.face(word);
-                if face.is_err() {
+                let has_face = matches!(face, Ok(Some(_)));
+                if !has_face {
                     self.block.corners.truncate(before);
                 }
-                let step = Step::Face(face?);
-                self.block.count();
-                step
+                match face? {
+                    Some(face) => {
+                        self.block.count();
+                        Step::Face(face)
+                    }
+                    None => ignored(word, "the face is left out: it has less than three corners"),
+                }
             }
             b"o" => Step::Object(self.rest()),
             b"g" => Step::Group(self.rest()),
             b"usemtl" => Step::Material(self.rest()),
-            b"s" => Step::Smoothing(self.smoothing_group()?),
+            b"s" => self.smoothing_group(word),
             b"mtllib" => Step::Libraries(self.rest(), Place::of(word)),
             b"l" => ignored(word, "lines (`l`) are ignored: they have no surface"),
             b"p" => ignored(word, "points (`p`) are ignored: they have no surface"),
@@ -220,7 +226,8 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn face(&mut self, start: &Word<'_>) -> Fallible<Face> {
+    /// A face, unless it has less than three corners.
+    fn face(&mut self, start: &Word<'_>) -> Fallible<Option<Face>> {
         let before = self.block.corners.len();
         loop {
             // Most corners are plain numbers.
@@ -228,19 +235,21 @@ impl<'a> Parser<'a> {
                 self.block.corners.push(RawCorner::plain(position));
                 continue;
             }
-            let Some(word) = self.words.next_in_line() else {
+            let Some(mut word) = self.words.next_in_line() else {
                 break;
             };
             let corner = RawCorner::parse(word.bytes)
+                // Nearly no word ends with a comment, so none is looked for before.
+                .or_else(|_| {
+                    word = self.words.uncommented(word);
+                    RawCorner::parse(word.bytes)
+                })
                 .map_err(|problem| self.text.at(&word, Diagnostic::error(problem)))?;
             self.block.corners.push(corner);
         }
         let corners = self.block.corners.len() - before;
         if corners < 3 {
-            let word = self
-                .words
-                .expected_in_line("another corner (a face has at least three)");
-            return Err(Box::new(word));
+            return Ok(None);
         }
         let small = |n: usize| {
             u32::try_from(n).map_err(|_| {
@@ -248,32 +257,26 @@ impl<'a> Parser<'a> {
                 Box::new(self.text.at(start, Diagnostic::error(problem)))
             })
         };
-        Ok(Face {
+        Ok(Some(Face {
             start: small(start.start - self.block.start)?,
             line: start.line,
             corners: small(corners)?,
-        })
+        }))
     }
 
-    fn smoothing_group(&mut self) -> Fallible<u32> {
-        let Some(word) = self.words.next_in_line() else {
-            return Err(Box::new(
-                self.words.expected_in_line("a smoothing group, or `off`"),
-            ));
-        };
-        match word.bytes {
-            b"off" => Ok(0),
-            b"on" => Ok(1),
-            number => std::str::from_utf8(number)
-                .ok()
-                .and_then(|n| n.parse().ok())
-                .ok_or_else(|| {
-                    let problem = format!(
-                        "expected the number of a smoothing group, or `off`, found `{}`",
-                        word.shown()
-                    );
-                    Box::new(self.text.at(&word, Diagnostic::error(problem)))
-                }),
+    fn smoothing_group(&mut self, start: &Word<'_>) -> Step {
+        let word = self.words.next_uncommented();
+        let group = word.and_then(|word| match word.bytes {
+            b"off" => Some(0),
+            b"on" => Some(1),
+            number => std::str::from_utf8(number).ok()?.parse().ok(),
+        });
+        match group {
+            Some(group) => Step::Smoothing(group),
+            None => ignored(
+                start,
+                "a smoothing group is ignored: it is neither `off` nor a number from 0 to 4294967295",
+            ),
         }
     }
 
@@ -297,7 +300,7 @@ impl<'a> Parser<'a> {
             return;
         }
         let mut ahead = self.words.clone();
-        let Some(word) = ahead.next_in_line() else {
+        let Some(word) = ahead.next_uncommented() else {
             return;
         };
         if ahead.peek_in_line().is_none()
@@ -341,7 +344,7 @@ impl<'a> Parser<'a> {
 
     fn number_word(&mut self, what: &str) -> Fallible<Word<'a>> {
         self.words
-            .next_in_line()
+            .next_uncommented()
             .ok_or_else(|| Box::new(self.words.expected_in_line(&format!("a number ({what})"))))
     }
 

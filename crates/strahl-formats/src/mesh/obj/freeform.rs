@@ -103,7 +103,7 @@ impl FreeForm {
             }
             b"curv2" => {
                 let mut numbers = vec![];
-                while let Some(word) = line.words.next_in_line() {
+                while let Some(word) = line.words.next_uncommented() {
                     numbers.push(self.number_of(text, &word, self.parameters.len(), "`vp`")?);
                 }
                 self.begin(Element::Curve2(numbers), place);
@@ -114,7 +114,7 @@ impl FreeForm {
                     *x = line.number("an end of the surface's parameters")?;
                 }
                 let mut numbers = vec![];
-                while let Some(word) = line.words.next_in_line() {
+                while let Some(word) = line.words.next_uncommented() {
                     let corner = RawCorner::parse(word.bytes)
                         .and_then(|corner| corner.position_of(&word, &points.counts));
                     let number =
@@ -234,7 +234,7 @@ impl FreeForm {
                 line.number("the begin of a curve")?,
                 line.number("the end of a curve")?,
             ];
-            let Some(word) = line.words.next_in_line() else {
+            let Some(word) = line.words.next_uncommented() else {
                 let problem = line.words.expected_in_line("the number of a `curv2`");
                 return Err(Box::new(problem));
             };

@@ -232,7 +232,7 @@ impl<'a> Reader<'a, '_> {
     fn wrong_corner(&self, start: usize, line: u32, counts: &Counts) -> Box<Diagnostic> {
         let mut words = self.text.words(start, line).with_continuation();
         words.next();
-        while let Some(word) = words.next_in_line() {
+        while let Some(word) = words.next_uncommented() {
             if let Err(problem) = check_corner(word.bytes, counts) {
                 return Box::new(self.text.at(&word, Diagnostic::error(problem)));
             }
@@ -249,7 +249,7 @@ impl<'a> Reader<'a, '_> {
         }
         let number = u64::from(position) + 1;
         let problem = format!("the position of vertex {number} is not a finite number");
-        Box::new(match words.next() {
+        Box::new(match words.next_uncommented() {
             Some(word) => self.text.at(&word, Diagnostic::error(problem)),
             None => Diagnostic::error(problem),
         })

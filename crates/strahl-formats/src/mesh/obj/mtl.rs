@@ -434,7 +434,7 @@ impl<'a> Reader<'a, '_, '_> {
             message: format!("{}: the statement is ignored", problem.message),
             ..problem
         };
-        let Some(word) = self.words.next_in_line() else {
+        let Some(word) = self.words.next_uncommented() else {
             let words = &self.words;
             self.report
                 .count("no number", || wrong(words.expected_in_line(&what)));

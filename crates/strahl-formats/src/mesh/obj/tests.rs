@@ -140,9 +140,8 @@ fn smoothing_groups_give_smooth_normals_and_off_gives_none() {
 
 #[test]
 fn errors_show_the_place_and_reading_goes_on() {
-    let text = format!(
-        "{SQUARE}v 1 2\nf 1 2 9\nf 1 2\nf 0 1 2\nf 1/2/3/4 2 3\nf a b c\nv 1 2 inf\ns loud\nf 1 -9 2\nf 1/7 2 3\n"
-    );
+    let text =
+        format!("{SQUARE}v 1 2\nf 1 2 9\nf 0 1 2\nf 1/2/3/4 2 3\nf a b c\nf 1 -9 2\nf 1/7 2 3\n");
     let all = messages(&load(&text));
     assert_eq!(
         all[1],
@@ -154,15 +153,46 @@ fn errors_show_the_place_and_reading_goes_on() {
         [
             "error: expected a number (z), found the end of the line",
             "error: vertex 9 does not exist: there are 4 so far",
-            "error: expected another corner (a face has at least three), found the end of the line",
             "error: vertex 0 does not exist: OBJ counts from 1",
             "error: expected a corner such as `1`, `1/2`, `1//3` or `1/2/3`, found `1/2/3/4`",
             "error: expected the number of a vertex, found `a`",
-            "error: expected the number of a smoothing group, or `off`, found `loud`",
-            "error: vertex -9 does not exist: there are 5 so far",
+            "error: vertex -9 does not exist: there are 4 so far",
             "error: texture coordinate 7 does not exist: there are 0 so far",
         ]
     );
+}
+
+#[test]
+fn odd_faces_and_smoothing_groups_are_left_out() {
+    let loaded = load(&format!(
+        "{ROOF}s 1\ns\ns -1\ns 4294967296\ns loud\nf\nf 1 2\nfo 1 4 3 2\nf 4 5 6 3# the other half\n"
+    ));
+    assert_eq!(
+        loaded
+            .diagnostics
+            .iter()
+            .map(|d| d.message.as_str())
+            .collect::<Vec<_>>(),
+        [
+            "a smoothing group is ignored: it is neither `off` nor a number from 0 to 4294967295 (4 times, this is the first)",
+            "the face is left out: it has less than three corners (2 times, this is the first)",
+        ]
+    );
+    let scene = loaded.scene.expect("warnings only");
+    let mesh = mesh(&scene.objects.0[0]);
+    assert_eq!(mesh.triangle_count(), 4);
+    // The group before counts on.
+    let n = look_down(&mesh, -1e-9, 0.5).n_shade;
+    assert!((n - DVec3::Z).length() < 1e-6, "{n}");
+}
+
+#[test]
+fn comments_may_touch_numbers() {
+    let touching = scene(
+        "v 0 0 0#a\nv 1 0 0 1# a\nv 0 1 0#\nvt 0 0#\nvn 0 0 1#\ns 1#\nf 1/1/1 2/1/1 3/1/1#c\n",
+    );
+    assert_eq!(mesh(&touching.objects.0[0]).triangle_count(), 1);
+    assert_eq!(material("Ns 20#\nKs 1 1 1#").finish.shininess, 20.0);
 }
 
 #[test]
@@ -405,7 +435,7 @@ fn odd_values_of_materials_leave_something_sensible() {
 }
 
 /// Valid and invalid statements.
-const STATEMENTS: [&str; 28] = [
+const STATEMENTS: [&str; 29] = [
     SQUARE,
     "v 0 0 1\r\nv 1 0 1\r\n",
     "vt 0.5 0.5\nvn 0 0 1 \\\n\n",
@@ -433,6 +463,7 @@ const STATEMENTS: [&str; 28] = [
     "f 1 x 3\n",
     "v 1 2\n",
     "v 1 2 nan\n",
+    "f 1 2 3#\nfo 1 2 4\ns -1\n",
     "s loud\n",
 ];
 
@@ -443,7 +474,7 @@ proptest! {
         choices in prop::collection::vec(0..STATEMENTS.len(), 0..80),
         wrong in any::<bool>(),
     ) {
-        let right = STATEMENTS.len() - 8;
+        let right = STATEMENTS.len() - 9;
         let statements = choices.into_iter().map(|i| STATEMENTS[if wrong { i } else { i % right }]);
         let text: String = [SQUARE, STATEMENTS[2]].into_iter().chain(statements).collect();
         assert_parts_make_no_difference(&text, super::read_with);
