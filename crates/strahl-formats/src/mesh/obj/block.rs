@@ -19,6 +19,8 @@ pub(super) struct Block {
     /// Of all faces.
     pub(super) corners: Vec<RawCorner>,
     pub(super) steps: Vec<Step>,
+    /// The first position that has a colour.
+    pub(super) color: Option<Box<Place>>,
     /// The lengths of the lists at the last face.
     counts: Counts,
 }
@@ -149,7 +151,7 @@ impl<'a> Parser<'a> {
         let step = match word.bytes {
             b"v" => {
                 let position = self.point()?;
-                self.weight();
+                self.weight(word);
                 self.block.positions.push(position);
                 if position.is_finite() {
                     return Ok(());
@@ -294,8 +296,8 @@ impl<'a> Parser<'a> {
         ))
     }
 
-    /// Takes the weight behind a point, if a single number follows; more of them are a colour.
-    fn weight(&mut self) {
+    /// Takes the weight behind the point of a statement, if a single number follows; more of them are a colour.
+    fn weight(&mut self, start: &Word<'_>) {
         if self.words.peek_in_line().is_none() {
             return;
         }
@@ -303,8 +305,9 @@ impl<'a> Parser<'a> {
         let Some(word) = ahead.next_uncommented() else {
             return;
         };
-        if ahead.peek_in_line().is_none()
-            && let Ok(weight) = parse_f64(word.bytes)
+        if ahead.peek_in_line().is_some() {
+            self.block.color.get_or_insert_with(|| Place::of(start));
+        } else if let Ok(weight) = parse_f64(word.bytes)
             && weight != 1.0
             && let Ok(place) = u32::try_from(self.block.positions.len())
         {

@@ -2,7 +2,7 @@
 //!
 //! The reader is our own: the `tobj` crate reports neither lines nor columns, and gives up at the first error.
 //!
-//! Read are `v` (with a weight for rational surfaces; a colour is ignored), `vt`, `vn`, `f` in all its forms (negative numbers count
+//! Read are `v` (with a weight for rational surfaces; a colour is ignored with a warning), `vt`, `vn`, `f` in all its forms (negative numbers count
 //! back from the last vertex; polygons are cut into triangles), `o`, `g`, `s`, `usemtl`, `mtllib`, comments and lines
 //! continued by a backslash. Points and lines are ignored with a warning. Free-form surfaces are described in `freeform`.
 //!
@@ -27,6 +27,7 @@ use crate::input::bytes::{path_beside, read_beside};
 use crate::input::report::{Fallible, Report};
 use crate::input::text::Text;
 use crate::input::textures::TextureFiles;
+use crate::mesh::{COLORS_HINT, COLORS_IGNORED};
 use block::{Block, Face, Parser, Place, Step, read_ahead};
 use faces::{Counts, Faces, PartKey, RawCorner, check_corner};
 use freeform::{FreeForm, Outcome, Points};
@@ -62,6 +63,7 @@ fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Blo
         faces: Faces::default(),
         free_form: FreeForm::default(),
         weights: HashMap::new(),
+        color: None,
         surfaces: vec![],
         current: PartKey::default(),
         smoothing: 0,
@@ -84,6 +86,8 @@ struct Reader<'a, 'r> {
     free_form: FreeForm,
     /// The weights of positions that have one other than 1.
     weights: HashMap<u32, f64>,
+    /// The first position that has a colour.
+    color: Option<Place>,
     /// The free-form surfaces, each with the name of its material.
     surfaces: Vec<(Object, Arc<str>)>,
     /// Names and material of the following faces.
@@ -125,6 +129,9 @@ impl<'a> Reader<'a, '_> {
         self.weights
             .extend(weights.map(|(place, weight)| (first.saturating_add(place), weight)));
         self.faces.positions.extend(block.positions);
+        if let Some(place) = block.color {
+            self.color.get_or_insert(*place);
+        }
         self.faces.uvs.extend(block.uvs);
         self.faces.normals.extend(block.normals);
         let mut corners = block.corners.as_slice();
@@ -315,6 +322,13 @@ impl<'a> Reader<'a, '_> {
         if let Some(place) = self.free_form.unfinished() {
             let what = "the curve or surface is left out: its `end` is missing";
             self.count("end", place, || what.to_owned());
+        }
+        if let Some(place) = self.color {
+            let text = self.text;
+            self.report.warning(|| {
+                let problem = Diagnostic::warning(COLORS_IGNORED).hint(COLORS_HINT);
+                text.place(problem, place.start, place.length, place.line)
+            });
         }
         let Self {
             text,

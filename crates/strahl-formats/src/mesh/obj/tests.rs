@@ -38,7 +38,7 @@ fn names(scene: &Scene) -> Vec<&str> {
         .collect()
 }
 
-const SQUARE: &str = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\n";
+const SQUARE: &str = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
 fn all_forms_of_corners_are_read() {
@@ -184,6 +184,20 @@ fn odd_faces_and_smoothing_groups_are_left_out() {
     // The group before counts on.
     let n = look_down(&mesh, -1e-9, 0.5).n_shade;
     assert!((n - DVec3::Z).length() < 1e-6, "{n}");
+}
+
+#[test]
+fn colours_of_vertices_are_remarked_upon() {
+    let text = "v 0 0 0 1\nv 1 0 0 1 0.5 0\nv 1 1 0 0 1 0\nf 1 2 3\n";
+    let loaded = load(text);
+    assert_eq!(
+        messages(&loaded),
+        [
+            "warning: the colours of the vertices are ignored\n --> part.obj:2:1\n  |\n2 | v 1 0 0 1 0.5 0\n  | ^\n  = help: materials do not vary from vertex to vertex; a texture does"
+        ]
+    );
+    assert!(loaded.scene.is_some());
+    assert_parts_make_no_difference(&text.repeat(20), super::read_with);
 }
 
 #[test]
@@ -437,7 +451,7 @@ fn odd_values_of_materials_leave_something_sensible() {
 /// Valid and invalid statements.
 const STATEMENTS: [&str; 29] = [
     SQUARE,
-    "v 0 0 1\r\nv 1 0 1\r\n",
+    "v 0 0 1\r\nv 1 0 1 0.5 0.5 1\r\n",
     "vt 0.5 0.5\nvn 0 0 1 \\\n\n",
     "f 1 2 3\n",
     "f 1 2 \\\n3 4\n",

@@ -3,6 +3,7 @@ use super::header::{Element, Encoding, Header, Property, Scalar};
 use super::positions::Positions;
 use super::source::{Source, list_length};
 use crate::input::report::{Fallible, Report};
+use crate::mesh::{COLORS_HINT, COLORS_IGNORED};
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 use strahl_scene::Diagnostic;
@@ -102,8 +103,18 @@ impl<'h, 'r> Body<'h, 'r> {
         if has(&["red", "green", "blue"]) || has(&["diffuse_red", "diffuse_green", "diffuse_blue"])
         {
             report.warning(|| {
-                Diagnostic::warning(format!("`{name}`: the colours of the vertices are ignored"))
-                    .hint("materials do not vary from vertex to vertex; a texture does")
+                Diagnostic::warning(format!("`{name}`: {COLORS_IGNORED}")).hint(COLORS_HINT)
+            });
+        }
+        // MeshLab's coordinates of the corners of each face.
+        let has_wedges = header.elements.iter().any(|element| {
+            element.name == "face" && element.properties.iter().any(|p| p.name == "texcoord")
+        });
+        if has_wedges {
+            report.warning(|| {
+                let what = "the texture coordinates of the faces (`texcoord`) are ignored";
+                Diagnostic::warning(format!("`{name}`: {what}"))
+                    .hint("those of vertices (`s` and `t`) are read, and so are those of OBJ files")
             });
         }
         Ok(Self {

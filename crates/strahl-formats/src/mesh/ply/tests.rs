@@ -27,7 +27,7 @@ fn mesh(loaded: &Loaded) -> Arc<TriangleMesh> {
 const SQUARE: &str = "ply\nformat ascii 1.0\ncomment a square and a list of nothing\nobj_info x\n\
     element material 1\nproperty list uchar float ramp\nproperty int id\n\
     element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar quality\n\
-    element face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n\
+    element face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\nproperty list uchar float weights\n\
     element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n\
     3 0.1 0.2 0.3 7\n0 0 0 255\n1 0 0 255\n1 1 0 255\n0 1 0 255\n1 4 0 1 2 3 2 0 0\n0 3 0 2 1 0\n0 1\n";
 
@@ -289,6 +289,12 @@ fn clouds_and_colours_are_remarked_upon() {
     assert!(
         mesh(&loaded).triangle_count() == 3
             && messages(&loaded)[0].contains("the colours of the vertices are ignored")
+    );
+    let wedges = load(SQUARE.replace("float weights", "float texcoord"));
+    assert!(
+        mesh(&wedges).triangle_count() == 3
+            && messages(&wedges)[0]
+                .contains("the texture coordinates of the faces (`texcoord`) are ignored")
     );
     let flat = load(SQUARE.replace("3 0 2 1 0", "3 0 2 2 0"));
     assert!(messages(&flat)[0].contains("face 1 (counted from 0) is left out: it has no area"));
