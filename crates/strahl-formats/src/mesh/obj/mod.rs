@@ -23,7 +23,7 @@ mod vertices;
 
 use crate::input::Input;
 use crate::input::ahead::{Ahead, Statements};
-use crate::input::bytes::{path_beside, read_beside};
+use crate::input::bytes::{path_beside, read_beside, unquoted};
 use crate::input::report::{Fallible, Report};
 use crate::input::text::Text;
 use crate::input::textures::TextureFiles;
@@ -64,6 +64,7 @@ fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Blo
         free_form: FreeForm::default(),
         weights: HashMap::new(),
         color: None,
+        left_out: None,
         surfaces: vec![],
         current: PartKey::default(),
         smoothing: 0,
@@ -88,6 +89,8 @@ struct Reader<'a, 'r> {
     weights: HashMap<u32, f64>,
     /// The first position that has a colour.
     color: Option<Place>,
+    /// The first face or surface that is left out, with the reason.
+    left_out: Option<(String, Place)>,
     /// The free-form surfaces, each with the name of its material.
     surfaces: Vec<(Object, Arc<str>)>,
     /// Names and material of the following faces.
@@ -177,6 +180,7 @@ impl<'a> Reader<'a, '_> {
         match self.free_form.statement(self.text, place, &points)? {
             Outcome::Nothing => {}
             Outcome::Warning(key, what, place) => self.count(key, place, || what),
+            Outcome::LeftOut(key, what, place) => self.leave_out(key, place, || what.clone()),
             Outcome::Surface(nurbs, place) => {
                 let object = Object {
                     name: Some(self.current.name(self.text)),
@@ -188,6 +192,14 @@ impl<'a> Reader<'a, '_> {
             }
         }
         Ok(())
+    }
+
+    /// A warning about a face or surface that will be missing.
+    fn leave_out(&mut self, key: &'static str, place: Place, what: impl Fn() -> String) {
+        if self.left_out.is_none() {
+            self.left_out = Some((what(), place));
+        }
+        self.count(key, place, what);
     }
 
     fn count(&mut self, key: &'static str, place: Place, what: impl FnOnce() -> String) {
@@ -227,7 +239,7 @@ impl<'a> Reader<'a, '_> {
                 length: 1,
                 line,
             };
-            self.count("skipped face", place, || {
+            self.leave_out("skipped face", place, || {
                 format!("the face is left out: {why}")
             });
         }
@@ -264,20 +276,20 @@ impl<'a> Reader<'a, '_> {
 
     /// Reads material libraries. A name may have blanks, so the whole line is tried before its words.
     fn library(&mut self, line: &str, place: Place) {
-        let whole = path_beside(line)
-            .and_then(|path| read_beside(self.input.folder, &path).map(|bytes| (path, bytes)));
-        let found: Vec<_> = match whole {
-            Ok(found) => vec![(line.to_string(), Ok(found))],
-            Err(_) => line
-                .split_whitespace()
-                .map(|name| {
-                    let read = |path: String| {
-                        read_beside(self.input.folder, &path).map(|bytes| (path, bytes))
-                    };
-                    (name.to_owned(), path_beside(name).and_then(read))
-                })
-                .collect(),
+        let read = |name: &str| {
+            let path = path_beside(name)?;
+            read_beside(self.input.folder, &path).map(|bytes| (path, bytes))
         };
+        let name = unquoted(line);
+        let whole = read(name);
+        let mut found = vec![];
+        if whole.is_err() {
+            found.extend(names_in(line).into_iter().map(|name| (name, read(name))));
+        }
+        // Without any of the words the line was probably meant as one name.
+        if !found.iter().any(|(_, read)| read.is_ok()) {
+            found = vec![(name, whole)];
+        }
         for (name, read) in found {
             match read {
                 Ok((path, bytes)) => {
@@ -321,7 +333,7 @@ impl<'a> Reader<'a, '_> {
     fn finish(mut self) -> Scene {
         if let Some(place) = self.free_form.unfinished() {
             let what = "the curve or surface is left out: its `end` is missing";
-            self.count("end", place, || what.to_owned());
+            self.leave_out("end", place, || what.to_owned());
         }
         if let Some(place) = self.color {
             let text = self.text;
@@ -337,6 +349,7 @@ impl<'a> Reader<'a, '_> {
             faces,
             materials,
             surfaces,
+            left_out,
             ..
         } = self;
         let meshes = faces.finish(text, report);
@@ -356,10 +369,38 @@ impl<'a> Reader<'a, '_> {
             scene.objects.0.push(object);
         }
         if scene.objects.0.is_empty() && !report.has_errors() {
-            report.error(|| Diagnostic::error(format!("`{}` has no faces", text.name)));
+            report.error(|| nothing_to_show(text, left_out));
         }
         scene
     }
+}
+
+/// The error of a file without faces. Its reason may be a warning, which quiet programs don't show.
+fn nothing_to_show(text: Text<'_>, left_out: Option<(String, Place)>) -> Diagnostic {
+    let name = text.name;
+    match left_out {
+        Some((why, place)) => {
+            let problem = format!("`{name}` has no faces or surfaces that can be shown: {why}");
+            let problem = Diagnostic::error(problem);
+            text.place(problem, place.start, place.length, place.line)
+        }
+        None => Diagnostic::error(format!("`{name}` has no faces")),
+    }
+}
+
+/// The names in a line: words, or anything in quotation marks.
+fn names_in(line: &str) -> Vec<&str> {
+    let mut names = vec![];
+    let mut rest = line.trim_start();
+    while !rest.is_empty() {
+        let quoted = rest.strip_prefix('"').and_then(|r| r.split_once('"'));
+        let (name, after) = quoted
+            .or_else(|| rest.split_once(char::is_whitespace))
+            .unwrap_or((rest, ""));
+        names.push(name);
+        rest = after.trim_start();
+    }
+    names
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@
 //! makes no sense leaves the material as it is, each with a warning.
 
 use crate::image::TextureUse;
+use crate::input::bytes::unquoted;
 use crate::input::report::Report;
 use crate::input::text::{Text, Word, Words, parse_f64};
 use crate::input::textures::TextureFiles;
@@ -354,7 +355,8 @@ impl<'a> Reader<'a, '_, '_> {
                 }
             }
         }
-        let name = String::from_utf8_lossy(self.words.skip_line().trim_ascii()).into_owned();
+        let name = String::from_utf8_lossy(self.words.skip_line().trim_ascii());
+        let name = unquoted(&name).to_owned();
         if name.is_empty() {
             let what = "a map without the name of a file is ignored";
             self.count(what, start, || what.to_owned());

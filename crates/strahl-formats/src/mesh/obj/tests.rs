@@ -139,6 +139,90 @@ fn smoothing_groups_give_smooth_normals_and_off_gives_none() {
 }
 
 #[test]
+fn names_may_be_in_quotation_marks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let put = |name: &str, bytes: &[u8]| {
+        fs::write(folder.path().join(name), bytes).expect("written");
+    };
+    put("one two.mtl", b"newmtl m\nmap_Kd \"my step.pgm\"\n");
+    put("b.mtl", b"newmtl n\nmap_Kd -clamp on my step.pgm\n");
+    put(
+        "my step.pgm",
+        &[b"P5 2 1 255\n".as_slice(), &[0, 255]].concat(),
+    );
+    let said = |lines: &str, faces: &str| {
+        put("a.obj", format!("{lines}\n{SQUARE}{faces}").as_bytes());
+        let loaded = load_path(&folder.path().join("a.obj"), None);
+        let scene = loaded.scene.expect("warnings only");
+        let textured = |o: &Object| o.material.as_ref().is_some_and(|m| m.pbr.is_some());
+        let count = scene.objects.0.iter().filter(|o| textured(o)).count();
+        let said = loaded.diagnostics.into_iter().map(|d| d.message);
+        (said.collect::<Vec<_>>(), count)
+    };
+    let both = "usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n";
+    for lines in [
+        "mtllib \"one two.mtl\" b.mtl",
+        "mtllib one two.mtl\nmtllib \"b.mtl\"",
+        "mtllib \"b.mtl\"  \"one two.mtl\"",
+    ] {
+        assert_eq!(said(lines, both), (vec![], 2), "{lines}");
+    }
+    // The reason is that of the whole name, unless one of its words is a file.
+    let (messages, _) = said("mtllib my things/../one two.mtl", "f 1 2 3\n");
+    assert_eq!(
+        messages,
+        [
+            "the material library `my things/../one two.mtl` is not read: only files in the scene's folder or below are read, by a relative path without `..`"
+        ]
+    );
+    let (messages, count) = said("mtllib c.mtl b.mtl", "usemtl n\nf 1 2 3\n");
+    assert_eq!(
+        (messages, count),
+        (
+            vec!["the material library `c.mtl` is not read: there is no such file".to_owned()],
+            1
+        )
+    );
+}
+
+#[test]
+fn without_anything_to_show_the_error_has_the_reason() {
+    let error = |text: &str| {
+        let loaded = load(text);
+        let errors = loaded.diagnostics.iter().filter(|d| d.is_error());
+        errors
+            .map(|d| (d.message.clone(), d.span.line))
+            .collect::<Vec<_>>()
+    };
+    let start = "`part.obj` has no faces or surfaces that can be shown: the";
+    for (text, expected, line) in [
+        (
+            format!("{NET}{}end\n", SURF.replace("parm u 0 0 0 1 1 1\n", "")),
+            "surface is left out: `parm u` is missing",
+            12,
+        ),
+        (
+            format!("{NET}{SURF}"),
+            "curve or surface is left out: its `end` is missing",
+            12,
+        ),
+        (
+            format!("{SQUARE}f 1 1 2\n"),
+            "face is left out: it has no area",
+            5,
+        ),
+    ] {
+        assert_eq!(error(&text), [(format!("{start} {expected}"), line)]);
+    }
+    assert_eq!(
+        error("v 1 2 3\n"),
+        [("`part.obj` has no faces".to_owned(), 0)]
+    );
+    // Where something is shown it stays a warning.
+    assert_eq!(error(&format!("{SQUARE}f 1 1 2\nf 1 2 3\n")), []);
+}
+
+#[test]
 fn errors_show_the_place_and_reading_goes_on() {
     let text =
         format!("{SQUARE}v 1 2\nf 1 2 9\nf 0 1 2\nf 1/2/3/4 2 3\nf a b c\nf 1 -9 2\nf 1/7 2 3\n");
