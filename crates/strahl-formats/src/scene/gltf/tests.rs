@@ -275,6 +275,28 @@ fn a_flattened_node_is_left_out() {
 }
 
 #[test]
+fn what_is_flat_may_be_flattened() {
+    // The triangle lies in z = 0; the second node mirrors it.
+    let single = scene(&with_nodes(r#"{"scale":[2,3,0],"mesh":0}"#, ""));
+    let twice = scene(&with_nodes(
+        r#"{"scale":[2,3,0],"mesh":0,"children":[1]},{"scale":[-1,1,1],"mesh":0}"#,
+        "",
+    ));
+    let corner = DVec3::new(1.0, 1.0, 0.0);
+    for (object, x) in [
+        (&single.objects.0[0], 2.0),
+        (&twice.objects.0[0], 2.0),
+        (&twice.objects.0[1], -2.0),
+    ] {
+        let to_world = object.transform.as_ref().expect("transformed");
+        assert_eq!(to_world.point_to_world(corner), DVec3::new(x, 3.0, 0.0));
+    }
+    assert_eq!(twice.objects.0.len(), 2);
+    let line = load(&with_nodes(r#"{"scale":[2,0,0],"mesh":0}"#, ""));
+    assert!(messages(&line)[1].contains("its transformation flattens it"));
+}
+
+#[test]
 fn cameras_look_along_the_negative_z_axis() {
     let perspective = r#","cameras":[{"type":"perspective","perspective":{"yfov":1.5707963,"znear":0.1,"aspectRatio":2}}]"#;
     let camera = scene(&with_nodes(
