@@ -160,6 +160,12 @@ pub(crate) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow
     Err(Box::new(problem))
 }
 
+/// The name of a file without the quotation marks that some programs put around names with blanks.
+pub(crate) fn unquoted(name: &str) -> &str {
+    let inner = name.strip_prefix('"').and_then(|n| n.strip_suffix('"'));
+    inner.filter(|n| !n.contains('"')).unwrap_or(name)
+}
+
 /// The path of a file that a scene names, with slashes and without `.`, if it is in the scene's folder or below.
 ///
 /// The check is lexical: `..`, absolute paths and drive letters are refused, symbolic links that the user put there are

@@ -39,7 +39,18 @@ impl Word<'_> {
     }
 }
 
+/// The text without the byte order mark that many programs on Windows begin texts in UTF-8 with.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 impl<'a> Text<'a> {
+    /// A text; a byte order mark at its begin is no part of it.
+    pub(crate) fn new(bytes: &'a [u8], name: &'a str, file: FileId) -> Self {
+        let bytes = without_mark(bytes);
+        Self { bytes, name, file }
+    }
+
     /// The words of the text from byte `start` in line `line`.
     pub(crate) fn words(self, start: usize, line: u32) -> Words<'a> {
         Words {
@@ -154,6 +165,31 @@ impl<'a> Words<'a> {
     pub(crate) fn next_in_line(&mut self) -> Option<Word<'a>> {
         self.skip_blanks(false);
         self.word()
+    }
+
+    /// The next word of the line that ends where a comment begins, even without a blank before it: for numbers, in which no
+    /// name can have such a sign.
+    pub(crate) fn next_uncommented(&mut self) -> Option<Word<'a>> {
+        let word = self.next_in_line()?;
+        Some(self.uncommented(word))
+    }
+
+    /// The part of the word just taken that is not in a comment; the comment is next then.
+    pub(crate) fn uncommented(&mut self, mut word: Word<'a>) -> Word<'a> {
+        let comment = self
+            .comment
+            .and_then(|comment| word.bytes.iter().position(|b| *b == comment));
+        // That of `1.#QNAN` is none.
+        let is_nan = |at: usize| {
+            word.bytes[..at].ends_with(b"1.")
+                && word.bytes.get(at + 1).is_some_and(u8::is_ascii_uppercase)
+        };
+        if let Some(length) = comment.filter(|at| !is_nan(*at)) {
+            word.bytes = &word.bytes[..length];
+            self.at = word.start + length;
+            self.last = Some(word);
+        }
+        word
     }
 
     /// The next word as a number, if it is one of not too many digits; if it is anything else, nothing is taken. What
@@ -402,6 +438,18 @@ fn short_number(text: &[u8]) -> Option<(f64, usize)> {
     }
 }
 
+/// What a word is that Rust does not read as a number: C libraries print NaN and infinity like `-nan(ind)` and `1.#QNAN`, too.
+#[cold]
+fn no_number(word: &[u8]) -> NumberError {
+    let word = word.to_ascii_lowercase();
+    let digits = word.strip_prefix(b"-").unwrap_or(&word);
+    if digits.starts_with(b"nan(") || digits.starts_with(b"1.#") {
+        NumberError::NotFinite
+    } else {
+        NumberError::NotANumber
+    }
+}
+
 /// A finite f64, the nearest to what is written.
 pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
     // Nearly all numbers are short ones.
@@ -411,7 +459,7 @@ pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
         return Ok(value);
     }
     let text = std::str::from_utf8(word).map_err(|_| NumberError::NotANumber)?;
-    let value: f64 = text.parse().map_err(|_| NumberError::NotANumber)?;
+    let value: f64 = text.parse().map_err(|_| no_number(word))?;
     if value.is_finite() {
         Ok(value)
     } else {
@@ -422,7 +470,7 @@ pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
 /// A finite f32, the nearest to what is written.
 pub(crate) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
     let text = std::str::from_utf8(word).map_err(|_| NumberError::NotANumber)?;
-    let value: f32 = text.parse().map_err(|_| NumberError::NotANumber)?;
+    let value: f32 = text.parse().map_err(|_| no_number(word))?;
     if value.is_finite() {
         Ok(value)
     } else {
@@ -443,11 +491,7 @@ mod tests {
     use super::*;
 
     fn text(bytes: &[u8]) -> Text<'_> {
-        Text {
-            bytes,
-            name: "a.txt",
-            file: FileId(0),
-        }
+        Text::new(bytes, "a.txt", FileId(0))
     }
 
     #[test]
@@ -459,6 +503,26 @@ mod tests {
         }
         let expected = [("a", 1), ("b", 1), ("d", 3), ("e#f", 5)];
         assert_eq!(all, expected.map(|(w, l)| (w.to_owned(), l)));
+    }
+
+    #[test]
+    fn a_comment_may_touch_a_number() {
+        let mut words = text(b"1 2#3 4\n5 #").words(0, 1);
+        words.next();
+        let two = words.next_uncommented().map(|w| w.shown());
+        assert_eq!(
+            (two.as_deref(), words.next_uncommented()),
+            (Some("2"), None)
+        );
+        assert_eq!(words.next().map(|w| w.shown()).as_deref(), Some("5"));
+        assert_eq!(words.next_uncommented(), None);
+        let nan = text(b"-1.#IND").words(0, 1).next_uncommented();
+        assert_eq!(nan.map(|w| w.bytes), Some(b"-1.#IND".as_slice()));
+        let mut plain = text(b"1#2").words(0, 1).without_comments();
+        assert_eq!(
+            plain.next_uncommented().map(|w| w.bytes),
+            Some(b"1#2".as_slice())
+        );
     }
 
     #[test]
@@ -515,7 +579,16 @@ mod tests {
     fn numbers_are_finite() {
         assert_eq!(parse_f64(b"-2.5e-3"), Ok(-2.5e-3));
         assert_eq!(parse_f32(b"0.1"), Ok(0.1));
-        for word in ["nan", "inf", "-Infinity", "1e999"] {
+        for word in [
+            "nan",
+            "inf",
+            "-Infinity",
+            "1e999",
+            "-nan(ind)",
+            "NaN(0x1)",
+            "-1.#IND00",
+            "1.#INF",
+        ] {
             assert_eq!(
                 parse_f64(word.as_bytes()),
                 Err(NumberError::NotFinite),

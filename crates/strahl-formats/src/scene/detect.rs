@@ -1,3 +1,4 @@
+use crate::input::text::without_mark;
 use crate::input::{Fallible, Input, Report};
 use std::path::Path;
 use std::{fmt, str::FromStr};
@@ -110,6 +111,7 @@ impl SceneFormat {
 
     /// The format detected from the (uncompressed) bytes, if possible. Binary STL has no mark of its own and is not recognised.
     pub fn sniff(bytes: &[u8]) -> Option<Self> {
+        let bytes = without_mark(bytes);
         FORMATS
             .iter()
             .find(|info| (info.looks_like)(bytes))

@@ -2,6 +2,9 @@ use super::{Loaded, SceneFormat, formats, load_bytes, load_path};
 use flate2::{Compression, write::GzEncoder};
 use std::io::Write;
 use std::path::Path;
+use strahl_geometry::Shape;
+use strahl_math::DVec3;
+use strahl_scene::ObjectKind;
 
 const BALL: &[u8] = b"v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 90\nhither 1\nresolution 64 32\nf 1 1 1 1 0 0 0 0\ns 0 0 0 1\n";
 
@@ -57,6 +60,51 @@ fn contents_show_their_format() {
     assert_eq!(sniffed(b"glTF\x02\0\0\0"), Some(SceneFormat::Gltf));
     assert_eq!(sniffed(b"GIF89a"), None);
     assert_eq!(sniffed(b""), None);
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_text() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\nusemtl m\nf 1 2 3\n";
+    let mtl = "newmtl m\nKd 1 0 0\n";
+    let ball = str::from_utf8(BALL).expect("a text");
+    let files = [
+        ("a.mtl", mtl),
+        ("a.obj", obj),
+        ("a.ply", ply),
+        ("a.stl", stl),
+        ("a.nff", ball),
+    ];
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), format!("\u{feff}{text}")).expect("written");
+    }
+    for (name, _) in &files[1..] {
+        let loaded = load_path(&folder.path().join(name), None);
+        assert_eq!(loaded.diagnostics, [], "{name}");
+        let scene = loaded.scene.expect("no errors");
+        assert_eq!(scene.objects.0.len(), 1, "{name}");
+        if let ObjectKind::Shape(Shape::TriangleMesh(mesh)) = &scene.objects.0[0].kind {
+            assert_eq!(mesh.corners(0)[1], DVec3::X, "{name}");
+        }
+        if *name == "a.obj" {
+            assert!(scene.objects.0[0].material.is_some());
+        }
+    }
+    // Columns are counted without it.
+    let wrong = load_bytes(
+        "\u{feff}v 1 x 3\n".as_bytes(),
+        "a.obj",
+        SceneFormat::Obj,
+        None,
+    );
+    assert_eq!(wrong.diagnostics[0].span.column, 5);
+    assert_eq!(
+        SceneFormat::sniff("\u{feff}v 1 2 3\n".as_bytes()),
+        Some(SceneFormat::Obj)
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 use super::faces::{Counts, RawCorner};
 use crate::input::ahead::{Piece, Statements, read_statements};
 use crate::input::report::Fallible;
-use crate::input::text::{Text, Word, Words, parse_f64};
+use crate::input::text::{NumberError, Text, Word, Words, parse_f64};
 use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 use strahl_scene::Diagnostic;
@@ -19,6 +19,8 @@ pub(super) struct Block {
     /// Of all faces.
     pub(super) corners: Vec<RawCorner>,
     pub(super) steps: Vec<Step>,
+    /// The first position that has a colour.
+    pub(super) color: Option<Box<Place>>,
     /// The lengths of the lists at the last face.
     counts: Counts,
 }
@@ -149,39 +151,64 @@ impl<'a> Parser<'a> {
         let step = match word.bytes {
             b"v" => {
                 let position = self.point()?;
-                self.weight();
+                self.weight(word);
                 self.block.positions.push(position);
-                return Ok(());
+                if position.is_finite() {
+                    return Ok(());
+                }
+                ignored(
+                    word,
+                    "the position of a vertex is not a finite number: no face may use it",
+                )
             }
             b"vn" => {
                 let normal = self.point()?;
-                self.block.normals.push(normal);
-                return Ok(());
+                if normal.is_finite() {
+                    self.block.normals.push(normal);
+                    return Ok(());
+                }
+                self.block.normals.push(DVec3::ZERO);
+                ignored(word, "a normal that is not finite counts as none")
             }
             b"vt" => {
-                let u = self.number("u")?;
+                let u = self.any_number("u")?;
                 let v = if self.words.peek_in_line().is_some() {
-                    self.number("v")?
+                    self.any_number("v")?
                 } else {
                     0.0
                 };
-                self.block.uvs.push(DVec2::new(u, 1.0 - v));
-                return Ok(());
+                let uv = DVec2::new(u, 1.0 - v);
+                // Meshes keep them in single precision.
+                if uv.as_vec2().is_finite() {
+                    self.block.uvs.push(uv);
+                    return Ok(());
+                }
+                self.block.uvs.push(DVec2::ZERO);
+                ignored(
+                    word,
+                    "texture coordinates that are not finite count as none",
+                )
             }
-            b"f" => {
+            // `fo` is the old name of a face.
+            b"f" | b"fo" => {
                 let before = self.block.corners.len();
                 let face = self.face(word);
-                if face.is_err() {
+                let has_face = matches!(face, Ok(Some(_)));
+                if !has_face {
                     self.block.corners.truncate(before);
                 }
-                let step = Step::Face(face?);
-                self.block.count();
-                step
+                match face? {
+                    Some(face) => {
+                        self.block.count();
+                        Step::Face(face)
+                    }
+                    None => ignored(word, "the face is left out: it has less than three corners"),
+                }
             }
             b"o" => Step::Object(self.rest()),
             b"g" => Step::Group(self.rest()),
             b"usemtl" => Step::Material(self.rest()),
-            b"s" => Step::Smoothing(self.smoothing_group()?),
+            b"s" => self.smoothing_group(word),
             b"mtllib" => Step::Libraries(self.rest(), Place::of(word)),
             b"l" => ignored(word, "lines (`l`) are ignored: they have no surface"),
             b"p" => ignored(word, "points (`p`) are ignored: they have no surface"),
@@ -201,7 +228,8 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn face(&mut self, start: &Word<'_>) -> Fallible<Face> {
+    /// A face, unless it has less than three corners.
+    fn face(&mut self, start: &Word<'_>) -> Fallible<Option<Face>> {
         let before = self.block.corners.len();
         loop {
             // Most corners are plain numbers.
@@ -209,19 +237,21 @@ impl<'a> Parser<'a> {
                 self.block.corners.push(RawCorner::plain(position));
                 continue;
             }
-            let Some(word) = self.words.next_in_line() else {
+            let Some(mut word) = self.words.next_in_line() else {
                 break;
             };
             let corner = RawCorner::parse(word.bytes)
+                // Nearly no word ends with a comment, so none is looked for before.
+                .or_else(|_| {
+                    word = self.words.uncommented(word);
+                    RawCorner::parse(word.bytes)
+                })
                 .map_err(|problem| self.text.at(&word, Diagnostic::error(problem)))?;
             self.block.corners.push(corner);
         }
         let corners = self.block.corners.len() - before;
         if corners < 3 {
-            let word = self
-                .words
-                .expected_in_line("another corner (a face has at least three)");
-            return Err(Box::new(word));
+            return Ok(None);
         }
         let small = |n: usize| {
             u32::try_from(n).map_err(|_| {
@@ -229,32 +259,26 @@ impl<'a> Parser<'a> {
                 Box::new(self.text.at(start, Diagnostic::error(problem)))
             })
         };
-        Ok(Face {
+        Ok(Some(Face {
             start: small(start.start - self.block.start)?,
             line: start.line,
             corners: small(corners)?,
-        })
+        }))
     }
 
-    fn smoothing_group(&mut self) -> Fallible<u32> {
-        let Some(word) = self.words.next_in_line() else {
-            return Err(Box::new(
-                self.words.expected_in_line("a smoothing group, or `off`"),
-            ));
-        };
-        match word.bytes {
-            b"off" => Ok(0),
-            b"on" => Ok(1),
-            number => std::str::from_utf8(number)
-                .ok()
-                .and_then(|n| n.parse().ok())
-                .ok_or_else(|| {
-                    let problem = format!(
-                        "expected the number of a smoothing group, or `off`, found `{}`",
-                        word.shown()
-                    );
-                    Box::new(self.text.at(&word, Diagnostic::error(problem)))
-                }),
+    fn smoothing_group(&mut self, start: &Word<'_>) -> Step {
+        let word = self.words.next_uncommented();
+        let group = word.and_then(|word| match word.bytes {
+            b"off" => Some(0),
+            b"on" => Some(1),
+            number => std::str::from_utf8(number).ok()?.parse().ok(),
+        });
+        match group {
+            Some(group) => Step::Smoothing(group),
+            None => ignored(
+                start,
+                "a smoothing group is ignored: it is neither `off` nor a number from 0 to 4294967295",
+            ),
         }
     }
 
@@ -266,23 +290,24 @@ impl<'a> Parser<'a> {
 
     fn point(&mut self) -> Fallible<DVec3> {
         Ok(DVec3::new(
-            self.number("x")?,
-            self.number("y")?,
-            self.number("z")?,
+            self.any_number("x")?,
+            self.any_number("y")?,
+            self.any_number("z")?,
         ))
     }
 
-    /// Takes the weight behind a point, if a single number follows; more of them are a colour.
-    fn weight(&mut self) {
+    /// Takes the weight behind the point of a statement, if a single number follows; more of them are a colour.
+    fn weight(&mut self, start: &Word<'_>) {
         if self.words.peek_in_line().is_none() {
             return;
         }
         let mut ahead = self.words.clone();
-        let Some(word) = ahead.next_in_line() else {
+        let Some(word) = ahead.next_uncommented() else {
             return;
         };
-        if ahead.peek_in_line().is_none()
-            && let Ok(weight) = parse_f64(word.bytes)
+        if ahead.peek_in_line().is_some() {
+            self.block.color.get_or_insert_with(|| Place::of(start));
+        } else if let Ok(weight) = parse_f64(word.bytes)
             && weight != 1.0
             && let Ok(place) = u32::try_from(self.block.positions.len())
         {
@@ -298,21 +323,38 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// A finite number.
     pub(super) fn number(&mut self, what: &str) -> Fallible<f64> {
         if let Some(number) = self.words.short_number_in_line() {
             return Ok(number);
         }
-        let Some(word) = self.words.next_in_line() else {
-            return Err(Box::new(
-                self.words.expected_in_line(&format!("a number ({what})")),
-            ));
-        };
-        parse_f64(word.bytes).map_err(|e| {
-            Box::new(
-                self.text
-                    .at(&word, e.describe(&word, &format!("a number ({what})"))),
-            )
-        })
+        let word = self.number_word(what)?;
+        parse_f64(word.bytes).map_err(|e| self.no_number(&word, e, what))
+    }
+
+    /// A number; NaN for one that is not finite.
+    fn any_number(&mut self, what: &str) -> Fallible<f64> {
+        if let Some(number) = self.words.short_number_in_line() {
+            return Ok(number);
+        }
+        let word = self.number_word(what)?;
+        match parse_f64(word.bytes) {
+            Ok(number) => Ok(number),
+            Err(NumberError::NotFinite) => Ok(f64::NAN),
+            Err(e) => Err(self.no_number(&word, e, what)),
+        }
+    }
+
+    fn number_word(&mut self, what: &str) -> Fallible<Word<'a>> {
+        self.words
+            .next_uncommented()
+            .ok_or_else(|| Box::new(self.words.expected_in_line(&format!("a number ({what})"))))
+    }
+
+    #[cold]
+    fn no_number(&self, word: &Word<'_>, error: NumberError, what: &str) -> Box<Diagnostic> {
+        let problem = error.describe(word, &format!("a number ({what})"));
+        Box::new(self.text.at(word, problem))
     }
 }
 

@@ -298,6 +298,13 @@ impl Faces {
         Ok(())
     }
 
+    /// The first of the face's corners whose position is not finite, and that position's place in the list.
+    #[cold]
+    pub(super) fn not_finite(&self) -> Option<(usize, u32)> {
+        let mut corners = self.corners.iter().map(|c| c.position).enumerate();
+        corners.find(|(_, position)| !self.positions[*position as usize].is_finite())
+    }
+
     /// Adds the face's normal to those of its corners, weighted by the angles.
     fn add_to_sums(&mut self, smoothing: u32) {
         let Some(normal) = polygon_normal(&self.points).and_then(DVec3::try_normalize) else {

@@ -60,6 +60,8 @@ pub(super) enum Outcome {
     Surface(Box<Nurbs>, Place),
     /// A key and a message.
     Warning(&'static str, String, Place),
+    /// The same about a surface that is missing.
+    LeftOut(&'static str, String, Place),
 }
 
 /// The points and weights of the file so far.
@@ -103,7 +105,7 @@ impl FreeForm {
             }
             b"curv2" => {
                 let mut numbers = vec![];
-                while let Some(word) = line.words.next_in_line() {
+                while let Some(word) = line.words.next_uncommented() {
                     numbers.push(self.number_of(text, &word, self.parameters.len(), "`vp`")?);
                 }
                 self.begin(Element::Curve2(numbers), place);
@@ -114,7 +116,7 @@ impl FreeForm {
                     *x = line.number("an end of the surface's parameters")?;
                 }
                 let mut numbers = vec![];
-                while let Some(word) = line.words.next_in_line() {
+                while let Some(word) = line.words.next_uncommented() {
                     let corner = RawCorner::parse(word.bytes)
                         .and_then(|corner| corner.position_of(&word, &points.counts));
                     let number =
@@ -234,7 +236,7 @@ impl FreeForm {
                 line.number("the begin of a curve")?,
                 line.number("the end of a curve")?,
             ];
-            let Some(word) = line.words.next_in_line() else {
+            let Some(word) = line.words.next_uncommented() else {
                 let problem = line.words.expected_in_line("the number of a `curv2`");
                 return Err(Box::new(problem));
             };
@@ -253,9 +255,6 @@ impl FreeForm {
         let Some((element, place)) = self.open.take() else {
             return Outcome::Nothing;
         };
-        let failed = |key, what: &str, why: String| {
-            Outcome::Warning(key, format!("the {what} is left out: {why}"), place)
-        };
         match element {
             Element::Ignored => Outcome::Nothing,
             Element::Curve2(numbers) => match self.curve(&numbers) {
@@ -266,7 +265,8 @@ impl FreeForm {
                 Err(why) => {
                     // It keeps its number.
                     self.curves.push(None);
-                    failed("curv2", "trimming curve", why)
+                    let what = format!("the trimming curve is left out: {why}");
+                    Outcome::Warning("curv2", what, place)
                 }
             },
             Element::Surface {
@@ -275,7 +275,10 @@ impl FreeForm {
                 loops,
             } => match self.surface(ranges, &numbers, &loops, points) {
                 Ok(nurbs) => Outcome::Surface(Box::new(nurbs), place),
-                Err(why) => failed("surf", "surface", why),
+                Err(why) => {
+                    let what = format!("the surface is left out: {why}");
+                    Outcome::LeftOut("surf", what, place)
+                }
             },
         }
     }

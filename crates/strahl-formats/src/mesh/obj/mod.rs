@@ -2,7 +2,7 @@
 //!
 //! The reader is our own: the `tobj` crate reports neither lines nor columns, and gives up at the first error.
 //!
-//! Read are `v` (with a weight for rational surfaces; a colour is ignored), `vt`, `vn`, `f` in all its forms (negative numbers count
+//! Read are `v` (with a weight for rational surfaces; a colour is ignored with a warning), `vt`, `vn`, `f` in all its forms (negative numbers count
 //! back from the last vertex; polygons are cut into triangles), `o`, `g`, `s`, `usemtl`, `mtllib`, comments and lines
 //! continued by a backslash. Points and lines are ignored with a warning. Free-form surfaces are described in `freeform`.
 //!
@@ -23,10 +23,11 @@ mod vertices;
 
 use crate::input::Input;
 use crate::input::ahead::{Ahead, Statements};
-use crate::input::bytes::{path_beside, read_beside};
+use crate::input::bytes::{path_beside, read_beside, unquoted};
 use crate::input::report::{Fallible, Report};
 use crate::input::text::Text;
 use crate::input::textures::TextureFiles;
+use crate::mesh::{COLORS_HINT, COLORS_IGNORED};
 use block::{Block, Face, Parser, Place, Step, read_ahead};
 use faces::{Counts, Faces, PartKey, RawCorner, check_corner};
 use freeform::{FreeForm, Outcome, Points};
@@ -47,11 +48,7 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
 /// [`read`] with parts of another size, which does not change the result.
 fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Block>) -> Scene {
     let mut scene = Scene::default();
-    let text = Text {
-        bytes: input.bytes,
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
+    let text = Text::new(input.bytes, input.name, scene.sources.add(input.name));
     if text.refuse_binary("an OBJ file", report) {
         return scene;
     }
@@ -66,6 +63,8 @@ fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Blo
         faces: Faces::default(),
         free_form: FreeForm::default(),
         weights: HashMap::new(),
+        color: None,
+        left_out: None,
         surfaces: vec![],
         current: PartKey::default(),
         smoothing: 0,
@@ -88,6 +87,10 @@ struct Reader<'a, 'r> {
     free_form: FreeForm,
     /// The weights of positions that have one other than 1.
     weights: HashMap<u32, f64>,
+    /// The first position that has a colour.
+    color: Option<Place>,
+    /// The first face or surface that is left out, with the reason.
+    left_out: Option<(String, Place)>,
     /// The free-form surfaces, each with the name of its material.
     surfaces: Vec<(Object, Arc<str>)>,
     /// Names and material of the following faces.
@@ -129,6 +132,9 @@ impl<'a> Reader<'a, '_> {
         self.weights
             .extend(weights.map(|(place, weight)| (first.saturating_add(place), weight)));
         self.faces.positions.extend(block.positions);
+        if let Some(place) = block.color {
+            self.color.get_or_insert(*place);
+        }
         self.faces.uvs.extend(block.uvs);
         self.faces.normals.extend(block.normals);
         let mut corners = block.corners.as_slice();
@@ -174,6 +180,7 @@ impl<'a> Reader<'a, '_> {
         match self.free_form.statement(self.text, place, &points)? {
             Outcome::Nothing => {}
             Outcome::Warning(key, what, place) => self.count(key, place, || what),
+            Outcome::LeftOut(key, what, place) => self.leave_out(key, place, || what.clone()),
             Outcome::Surface(nurbs, place) => {
                 let object = Object {
                     name: Some(self.current.name(self.text)),
@@ -185,6 +192,14 @@ impl<'a> Reader<'a, '_> {
             }
         }
         Ok(())
+    }
+
+    /// A warning about a face or surface that will be missing.
+    fn leave_out(&mut self, key: &'static str, place: Place, what: impl Fn() -> String) {
+        if self.left_out.is_none() {
+            self.left_out = Some((what(), place));
+        }
+        self.count(key, place, what);
     }
 
     fn count(&mut self, key: &'static str, place: Place, what: impl FnOnce() -> String) {
@@ -216,12 +231,15 @@ impl<'a> Reader<'a, '_> {
             }
         }
         if let Err(why) = self.faces.add(&self.current, self.smoothing, line) {
+            if let Some((corner, position)) = self.faces.not_finite() {
+                return Err(self.not_finite(start, line, corner, position));
+            }
             let place = Place {
                 start,
                 length: 1,
                 line,
             };
-            self.count("skipped face", place, || {
+            self.leave_out("skipped face", place, || {
                 format!("the face is left out: {why}")
             });
         }
@@ -233,7 +251,7 @@ impl<'a> Reader<'a, '_> {
     fn wrong_corner(&self, start: usize, line: u32, counts: &Counts) -> Box<Diagnostic> {
         let mut words = self.text.words(start, line).with_continuation();
         words.next();
-        while let Some(word) = words.next_in_line() {
+        while let Some(word) = words.next_uncommented() {
             if let Err(problem) = check_corner(word.bytes, counts) {
                 return Box::new(self.text.at(&word, Diagnostic::error(problem)));
             }
@@ -241,22 +259,37 @@ impl<'a> Reader<'a, '_> {
         Box::new(words.expected_in_line("a corner"))
     }
 
+    /// The error of a face one of whose corners has no position.
+    #[cold]
+    fn not_finite(&self, start: usize, line: u32, corner: usize, position: u32) -> Box<Diagnostic> {
+        let mut words = self.text.words(start, line).with_continuation();
+        for _ in 0..=corner {
+            words.next();
+        }
+        let number = u64::from(position) + 1;
+        let problem = format!("the position of vertex {number} is not a finite number");
+        Box::new(match words.next_uncommented() {
+            Some(word) => self.text.at(&word, Diagnostic::error(problem)),
+            None => Diagnostic::error(problem),
+        })
+    }
+
     /// Reads material libraries. A name may have blanks, so the whole line is tried before its words.
     fn library(&mut self, line: &str, place: Place) {
-        let whole = path_beside(line)
-            .and_then(|path| read_beside(self.input.folder, &path).map(|bytes| (path, bytes)));
-        let found: Vec<_> = match whole {
-            Ok(found) => vec![(line.to_string(), Ok(found))],
-            Err(_) => line
-                .split_whitespace()
-                .map(|name| {
-                    let read = |path: String| {
-                        read_beside(self.input.folder, &path).map(|bytes| (path, bytes))
-                    };
-                    (name.to_owned(), path_beside(name).and_then(read))
-                })
-                .collect(),
+        let read = |name: &str| {
+            let path = path_beside(name)?;
+            read_beside(self.input.folder, &path).map(|bytes| (path, bytes))
         };
+        let name = unquoted(line);
+        let whole = read(name);
+        let mut found = vec![];
+        if whole.is_err() {
+            found.extend(names_in(line).into_iter().map(|name| (name, read(name))));
+        }
+        // Without any of the words the line was probably meant as one name.
+        if !found.iter().any(|(_, read)| read.is_ok()) {
+            found = vec![(name, whole)];
+        }
         for (name, read) in found {
             match read {
                 Ok((path, bytes)) => {
@@ -288,11 +321,7 @@ impl<'a> Reader<'a, '_> {
             Some(folder) => folder.shown(path),
             None => path.to_owned(),
         };
-        let text = Text {
-            bytes,
-            name: &shown,
-            file: self.scene.sources.add(&shown),
-        };
+        let text = Text::new(bytes, &shown, self.scene.sources.add(&shown));
         for material in mtl::read(text, &mut self.textures, self.report) {
             // The first of several materials with the same name counts, as in other programs.
             self.materials
@@ -304,7 +333,14 @@ impl<'a> Reader<'a, '_> {
     fn finish(mut self) -> Scene {
         if let Some(place) = self.free_form.unfinished() {
             let what = "the curve or surface is left out: its `end` is missing";
-            self.count("end", place, || what.to_owned());
+            self.leave_out("end", place, || what.to_owned());
+        }
+        if let Some(place) = self.color {
+            let text = self.text;
+            self.report.warning(|| {
+                let problem = Diagnostic::warning(COLORS_IGNORED).hint(COLORS_HINT);
+                text.place(problem, place.start, place.length, place.line)
+            });
         }
         let Self {
             text,
@@ -313,6 +349,7 @@ impl<'a> Reader<'a, '_> {
             faces,
             materials,
             surfaces,
+            left_out,
             ..
         } = self;
         let meshes = faces.finish(text, report);
@@ -332,10 +369,38 @@ impl<'a> Reader<'a, '_> {
             scene.objects.0.push(object);
         }
         if scene.objects.0.is_empty() && !report.has_errors() {
-            report.error(|| Diagnostic::error(format!("`{}` has no faces", text.name)));
+            report.error(|| nothing_to_show(text, left_out));
         }
         scene
     }
+}
+
+/// The error of a file without faces. Its reason may be a warning, which quiet programs don't show.
+fn nothing_to_show(text: Text<'_>, left_out: Option<(String, Place)>) -> Diagnostic {
+    let name = text.name;
+    match left_out {
+        Some((why, place)) => {
+            let problem = format!("`{name}` has no faces or surfaces that can be shown: {why}");
+            let problem = Diagnostic::error(problem);
+            text.place(problem, place.start, place.length, place.line)
+        }
+        None => Diagnostic::error(format!("`{name}` has no faces")),
+    }
+}
+
+/// The names in a line: words, or anything in quotation marks.
+fn names_in(line: &str) -> Vec<&str> {
+    let mut names = vec![];
+    let mut rest = line.trim_start();
+    while !rest.is_empty() {
+        let quoted = rest.strip_prefix('"').and_then(|r| r.split_once('"'));
+        let (name, after) = quoted
+            .or_else(|| rest.split_once(char::is_whitespace))
+            .unwrap_or((rest, ""));
+        names.push(name);
+        rest = after.trim_start();
+    }
+    names
 }
 
 #[cfg(test)]

@@ -11,13 +11,16 @@
 //! | `map_Kd` | the texture of Kd, with `-o`, `-s` and `-clamp`; such a material is shaded as a rough dielectric |
 //! | `map_d` of the same file as `map_Kd` | that texture's alpha |
 //!
-//! Without `illum` a material has a highlight, as with `illum 2`. Other maps are ignored with a warning.
+//! Without `illum` a material has a highlight, as with `illum 2`. Other maps are ignored with a warning. Nothing in a library is an
+//! error, as a missing one is none: a number that is out of range is clamped if its end has a meaning, and anything else that
+//! makes no sense leaves the material as it is, each with a warning.
 
 use crate::image::TextureUse;
-use crate::input::report::{Fallible, Report};
+use crate::input::bytes::unquoted;
+use crate::input::report::Report;
 use crate::input::text::{Text, Word, Words, parse_f64};
 use crate::input::textures::TextureFiles;
-use strahl_scene::Diagnostic;
+use strahl_scene::{Diagnostic, Severity};
 use strahl_shade::image_texture::{Filter, Wrap};
 use strahl_shade::{Color, Finish, Material, Pbr, TextureRef, Textures};
 
@@ -186,12 +189,7 @@ pub(super) fn read(
         materials: vec![],
     };
     while let Some(word) = reader.words.next() {
-        if let Err(problem) = reader.statement(&word) {
-            reader.report.error(|| *problem);
-            if reader.report.is_hopeless() {
-                break;
-            }
-        }
+        reader.statement(&word);
         reader.words.skip_line();
     }
     reader
@@ -209,31 +207,41 @@ struct Reader<'a, 'r, 'f> {
     materials: Vec<Statements>,
 }
 
-impl Reader<'_, '_, '_> {
-    fn statement(&mut self, word: &Word<'_>) -> Fallible<()> {
+impl<'a> Reader<'a, '_, '_> {
+    fn statement(&mut self, word: &Word<'_>) {
         if word.bytes == b"newmtl" {
             let name = String::from_utf8_lossy(self.words.skip_line().trim_ascii()).into_owned();
             self.materials.push(Statements::new(name));
-            return Ok(());
+            return;
         }
         let Some(mut material) = self.materials.pop() else {
-            let problem = format!("expected `newmtl`, found `{}`", word.shown());
-            return Err(Box::new(self.text.at(word, Diagnostic::error(problem))));
+            let what = "what comes before the first `newmtl` is ignored";
+            self.count(what, word, || what.to_owned());
+            return;
         };
-        let done = self.property(word, &mut material);
+        self.property(word, &mut material);
         self.materials.push(material);
-        done
     }
 
-    fn property(&mut self, word: &Word<'_>, material: &mut Statements) -> Fallible<()> {
+    /// A warning about a word, counted by its key.
+    fn count(&mut self, key: &'static str, word: &Word<'_>, what: impl FnOnce() -> String) {
+        let text = self.text;
+        self.report
+            .count(key, || text.at(word, Diagnostic::warning(what())));
+    }
+
+    fn property(&mut self, word: &Word<'_>, material: &mut Statements) {
         match word.bytes {
-            b"Ka" => material.ka = self.color(word)?.or(material.ka),
-            b"Kd" => material.kd = self.color(word)?.unwrap_or(material.kd),
-            b"Ks" => material.ks = self.color(word)?.unwrap_or(material.ks),
-            b"Ke" => material.ke = self.color(word)?.unwrap_or(material.ke),
-            b"Tf" => material.tf = self.color(word)?.or(material.tf),
-            b"Ns" => material.ns = self.at_least("Ns", 0.0, f64::MAX)?,
-            b"Ni" => material.ni = self.at_least("Ni, the index of refraction,", 0.001, 1000.0)?,
+            b"Ka" => material.ka = self.color(word).or(material.ka),
+            b"Kd" => material.kd = self.color(word).unwrap_or(material.kd),
+            b"Ks" => material.ks = self.color(word).unwrap_or(material.ks),
+            b"Ke" => material.ke = self.color(word).unwrap_or(material.ke),
+            b"Tf" => material.tf = self.color(word).or(material.tf),
+            b"Ns" => material.ns = self.clamped("Ns", 0.0, f64::MAX).unwrap_or(material.ns),
+            b"Ni" => {
+                let what = "Ni, the index of refraction,";
+                material.ni = self.within(what, 0.001, 1000.0).unwrap_or(material.ni);
+            }
             b"d" => {
                 if self
                     .words
@@ -242,15 +250,22 @@ impl Reader<'_, '_, '_> {
                 {
                     self.words.next_in_line();
                 }
-                material.d = self.at_least("d", 0.0, 1.0)?;
+                material.d = self.clamped("d", 0.0, 1.0).unwrap_or(material.d);
             }
-            b"Tr" => material.d = 1.0 - self.at_least("Tr", 0.0, 1.0)?,
-            b"illum" => material.illum = self.at_least("illum", 0.0, 10.0)? as u32,
-            b"map_Kd" => self.diffuse_map(word, material)?,
-            b"map_d" => material.map_d = Some(self.map()?.0),
+            b"Tr" => material.d = self.clamped("Tr", 0.0, 1.0).map_or(material.d, |t| 1.0 - t),
+            b"illum" => {
+                let illum = self.within("illum", 0.0, 10.0).map(|illum| illum as u32);
+                material.illum = illum.unwrap_or(material.illum);
+            }
+            b"map_Kd" => self.diffuse_map(word, material),
+            b"map_d" => {
+                material.map_d = self
+                    .map(word)
+                    .map(|(name, _)| name)
+                    .or(material.map_d.take())
+            }
             b"sharpness" | b"map_aat" => {}
             _ => {
-                let text = self.text;
                 let key = match word.bytes {
                     b"bump" | b"map_bump" | b"map_Bump" | b"norm" | b"disp" => {
                         "bump maps are ignored"
@@ -260,26 +275,21 @@ impl Reader<'_, '_, '_> {
                     }
                     _ => "an unknown property of a material is ignored",
                 };
-                self.report
-                    .count(key, || text.at(word, Diagnostic::warning(key)));
+                self.count(key, word, || key.to_owned());
             }
         }
         if let (Some(map_d), Some((map_kd, _))) = (&material.map_d, &material.map_kd)
             && map_d != map_kd
         {
-            let text = self.text;
-            self.report.count("map_d", || {
-                text.at(
-                    word,
-                    Diagnostic::warning("`map_d` is ignored: it is not the file of `map_Kd`"),
-                )
-            });
+            let what = "`map_d` is ignored: it is not the file of `map_Kd`";
+            self.count(what, word, || what.to_owned());
         }
-        Ok(())
     }
 
-    fn diffuse_map(&mut self, word: &Word<'_>, material: &mut Statements) -> Fallible<()> {
-        let (name, options) = self.map()?;
+    fn diffuse_map(&mut self, word: &Word<'_>, material: &mut Statements) {
+        let Some((name, options)) = self.map(word) else {
+            return;
+        };
         match self.textures.get(&name, TextureUse::Color) {
             Ok(image) => {
                 let wrap = if options.clamp {
@@ -299,21 +309,14 @@ impl Reader<'_, '_, '_> {
                 };
                 material.map_kd = Some((name, texture));
             }
-            Err(why) => {
-                let text = self.text;
-                self.report.count("missing texture", || {
-                    text.at(
-                        word,
-                        Diagnostic::warning(format!("the texture `{name}` is not read: {why}")),
-                    )
-                });
-            }
+            Err(why) => self.count("missing texture", word, || {
+                format!("the texture `{name}` is not read: {why}")
+            }),
         }
-        Ok(())
     }
 
-    /// The options and the file name of a map; the name is the rest of the line.
-    fn map(&mut self) -> Fallible<(String, MapOptions)> {
+    /// The file name of a map, which is the rest of the line, and its options; nothing if there is no name.
+    fn map(&mut self, start: &Word<'_>) -> Option<(String, MapOptions)> {
         let mut options = MapOptions {
             scale: [1.0; 2],
             offset: [0.0; 2],
@@ -341,20 +344,25 @@ impl Reader<'_, '_, '_> {
                     self.words.next_in_line();
                 }
                 _ => {
-                    let problem =
-                        Diagnostic::error(format!("unknown option `{}` of a map", option.shown()));
-                    return Err(Box::new(self.text.at(&option, problem)));
+                    self.count("unknown option", &option, || {
+                        format!(
+                            "the unknown option `{}` of a map is ignored",
+                            option.shown()
+                        )
+                    });
+                    // Its values, as far as they can be told from a name.
+                    self.up_to_three(&mut [0.0; 2]);
                 }
             }
         }
-        let start = self.words.clone();
-        let name = String::from_utf8_lossy(self.words.skip_line().trim_ascii()).into_owned();
+        let name = String::from_utf8_lossy(self.words.skip_line().trim_ascii());
+        let name = unquoted(&name).to_owned();
         if name.is_empty() {
-            return Err(Box::new(
-                start.expected_in_line("the name of a texture file"),
-            ));
+            let what = "a map without the name of a file is ignored";
+            self.count(what, start, || what.to_owned());
+            return None;
         }
-        Ok((name, options))
+        Some((name, options))
     }
 
     /// One to three numbers, of which two are kept.
@@ -372,53 +380,89 @@ impl Reader<'_, '_, '_> {
         }
     }
 
-    /// Three numbers, or one for all; nothing for a spectral curve or CIE XYZ.
-    fn color(&mut self, start: &Word<'_>) -> Fallible<Option<Color>> {
+    /// Three numbers, or one for all; nothing for a spectral curve or CIE XYZ, and what is no colour.
+    fn color(&mut self, start: &Word<'_>) -> Option<Color> {
         if self
             .words
             .peek_in_line()
             .is_some_and(|w| matches!(w.bytes, b"spectral" | b"xyz"))
         {
-            let (text, key) = (self.text, "colours as spectra or CIE XYZ are ignored");
-            self.report
-                .count(key, || text.at(start, Diagnostic::warning(key)));
-            return Ok(None);
+            let what = "colours as spectra or CIE XYZ are ignored";
+            self.count(what, start, || what.to_owned());
+            return None;
         }
         let what = "a part of a colour";
-        let r = self.at_least(what, 0.0, f64::MAX)?;
+        let r = self.clamped(what, 0.0, f64::MAX)?;
         if self.words.peek_in_line().is_none() {
-            return Ok(Some(Color::gray(r)));
+            return Some(Color::gray(r));
         }
-        Ok(Some(Color::new(
+        Some(Color::new(
             r,
-            self.at_least(what, 0.0, f64::MAX)?,
-            self.at_least(what, 0.0, f64::MAX)?,
-        )))
+            self.clamped(what, 0.0, f64::MAX)?,
+            self.clamped(what, 0.0, f64::MAX)?,
+        ))
     }
 
-    fn at_least(&mut self, what: &str, least: f64, most: f64) -> Fallible<f64> {
-        let Some(word) = self.words.next_in_line() else {
-            return Err(Box::new(
-                self.words.expected_in_line(&format!("a number ({what})")),
-            ));
-        };
-        let value = parse_f64(word.bytes).map_err(|e| {
-            Box::new(
-                self.text
-                    .at(&word, e.describe(&word, &format!("a number ({what})"))),
-            )
-        })?;
+    /// A number, moved into its range if it is outside.
+    fn clamped(&mut self, what: &'static str, least: f64, most: f64) -> Option<f64> {
+        let (word, value) = self.number(what)?;
         if value >= least && value <= most {
-            return Ok(value);
+            return Some(value);
         }
-        let range = if most < f64::MAX {
-            format!("between {least} and {most}")
-        } else {
-            format!("at least {least}")
-        };
-        let problem = format!("{what} must be {range}, found `{}`", word.shown());
-        Err(Box::new(self.text.at(&word, Diagnostic::error(problem))))
+        let end = if value < least { least } else { most };
+        self.count(what, &word, || {
+            format!("{}: it counts as {end}", outside(what, &word, least, most))
+        });
+        Some(end)
     }
+
+    /// A number; nothing if it is outside of its range.
+    fn within(&mut self, what: &'static str, least: f64, most: f64) -> Option<f64> {
+        let (word, value) = self.number(what)?;
+        if value >= least && value <= most {
+            return Some(value);
+        }
+        self.count(what, &word, || {
+            format!("{}: it is ignored", outside(what, &word, least, most))
+        });
+        None
+    }
+
+    /// A finite number with its word.
+    fn number(&mut self, what: &'static str) -> Option<(Word<'a>, f64)> {
+        let what = format!("a number ({what})");
+        let wrong = |problem: Diagnostic| Diagnostic {
+            severity: Severity::Warning,
+            message: format!("{}: the statement is ignored", problem.message),
+            ..problem
+        };
+        let Some(word) = self.words.next_uncommented() else {
+            let words = &self.words;
+            self.report
+                .count("no number", || wrong(words.expected_in_line(&what)));
+            return None;
+        };
+        match parse_f64(word.bytes) {
+            Ok(value) => Some((word, value)),
+            Err(e) => {
+                let text = self.text;
+                self.report.count("no number", || {
+                    wrong(text.at(&word, e.describe(&word, &what)))
+                });
+                None
+            }
+        }
+    }
+}
+
+/// What is wrong with a number that is outside of its range.
+fn outside(what: &str, word: &Word<'_>, least: f64, most: f64) -> String {
+    let range = if most < f64::MAX {
+        format!("between {least} and {most}")
+    } else {
+        format!("at least {least}")
+    };
+    format!("{what} must be {range}, found `{}`", word.shown())
 }
 
 struct MapOptions {

@@ -38,7 +38,7 @@ fn names(scene: &Scene) -> Vec<&str> {
         .collect()
 }
 
-const SQUARE: &str = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\n";
+const SQUARE: &str = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
 fn all_forms_of_corners_are_read() {
@@ -139,10 +139,93 @@ fn smoothing_groups_give_smooth_normals_and_off_gives_none() {
 }
 
 #[test]
-fn errors_show_the_place_and_reading_goes_on() {
-    let text = format!(
-        "{SQUARE}v 1 2\nf 1 2 9\nf 1 2\nf 0 1 2\nf 1/2/3/4 2 3\nf a b c\nv 1 2 inf\ns loud\nf 1 -9 2\nf 1/7 2 3\n"
+fn names_may_be_in_quotation_marks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let put = |name: &str, bytes: &[u8]| {
+        fs::write(folder.path().join(name), bytes).expect("written");
+    };
+    put("one two.mtl", b"newmtl m\nmap_Kd \"my step.pgm\"\n");
+    put("b.mtl", b"newmtl n\nmap_Kd -clamp on my step.pgm\n");
+    put(
+        "my step.pgm",
+        &[b"P5 2 1 255\n".as_slice(), &[0, 255]].concat(),
     );
+    let said = |lines: &str, faces: &str| {
+        put("a.obj", format!("{lines}\n{SQUARE}{faces}").as_bytes());
+        let loaded = load_path(&folder.path().join("a.obj"), None);
+        let scene = loaded.scene.expect("warnings only");
+        let textured = |o: &Object| o.material.as_ref().is_some_and(|m| m.pbr.is_some());
+        let count = scene.objects.0.iter().filter(|o| textured(o)).count();
+        let said = loaded.diagnostics.into_iter().map(|d| d.message);
+        (said.collect::<Vec<_>>(), count)
+    };
+    let both = "usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n";
+    for lines in [
+        "mtllib \"one two.mtl\" b.mtl",
+        "mtllib one two.mtl\nmtllib \"b.mtl\"",
+        "mtllib \"b.mtl\"  \"one two.mtl\"",
+    ] {
+        assert_eq!(said(lines, both), (vec![], 2), "{lines}");
+    }
+    // The reason is that of the whole name, unless one of its words is a file.
+    let (messages, _) = said("mtllib my things/../one two.mtl", "f 1 2 3\n");
+    assert_eq!(
+        messages,
+        [
+            "the material library `my things/../one two.mtl` is not read: only files in the scene's folder or below are read, by a relative path without `..`"
+        ]
+    );
+    let (messages, count) = said("mtllib c.mtl b.mtl", "usemtl n\nf 1 2 3\n");
+    assert_eq!(
+        (messages, count),
+        (
+            vec!["the material library `c.mtl` is not read: there is no such file".to_owned()],
+            1
+        )
+    );
+}
+
+#[test]
+fn without_anything_to_show_the_error_has_the_reason() {
+    let error = |text: &str| {
+        let loaded = load(text);
+        let errors = loaded.diagnostics.iter().filter(|d| d.is_error());
+        errors
+            .map(|d| (d.message.clone(), d.span.line))
+            .collect::<Vec<_>>()
+    };
+    let start = "`part.obj` has no faces or surfaces that can be shown: the";
+    for (text, expected, line) in [
+        (
+            format!("{NET}{}end\n", SURF.replace("parm u 0 0 0 1 1 1\n", "")),
+            "surface is left out: `parm u` is missing",
+            12,
+        ),
+        (
+            format!("{NET}{SURF}"),
+            "curve or surface is left out: its `end` is missing",
+            12,
+        ),
+        (
+            format!("{SQUARE}f 1 1 2\n"),
+            "face is left out: it has no area",
+            5,
+        ),
+    ] {
+        assert_eq!(error(&text), [(format!("{start} {expected}"), line)]);
+    }
+    assert_eq!(
+        error("v 1 2 3\n"),
+        [("`part.obj` has no faces".to_owned(), 0)]
+    );
+    // Where something is shown it stays a warning.
+    assert_eq!(error(&format!("{SQUARE}f 1 1 2\nf 1 2 3\n")), []);
+}
+
+#[test]
+fn errors_show_the_place_and_reading_goes_on() {
+    let text =
+        format!("{SQUARE}v 1 2\nf 1 2 9\nf 0 1 2\nf 1/2/3/4 2 3\nf a b c\nf 1 -9 2\nf 1/7 2 3\n");
     let all = messages(&load(&text));
     assert_eq!(
         all[1],
@@ -154,15 +237,85 @@ fn errors_show_the_place_and_reading_goes_on() {
         [
             "error: expected a number (z), found the end of the line",
             "error: vertex 9 does not exist: there are 4 so far",
-            "error: expected another corner (a face has at least three), found the end of the line",
             "error: vertex 0 does not exist: OBJ counts from 1",
             "error: expected a corner such as `1`, `1/2`, `1//3` or `1/2/3`, found `1/2/3/4`",
             "error: expected the number of a vertex, found `a`",
-            "error: expected a number (z), found `inf`, which is not a finite number",
-            "error: expected the number of a smoothing group, or `off`, found `loud`",
             "error: vertex -9 does not exist: there are 4 so far",
             "error: texture coordinate 7 does not exist: there are 0 so far",
         ]
+    );
+}
+
+#[test]
+fn odd_faces_and_smoothing_groups_are_left_out() {
+    let loaded = load(&format!(
+        "{ROOF}s 1\ns\ns -1\ns 4294967296\ns loud\nf\nf 1 2\nfo 1 4 3 2\nf 4 5 6 3# the other half\n"
+    ));
+    assert_eq!(
+        loaded
+            .diagnostics
+            .iter()
+            .map(|d| d.message.as_str())
+            .collect::<Vec<_>>(),
+        [
+            "a smoothing group is ignored: it is neither `off` nor a number from 0 to 4294967295 (4 times, this is the first)",
+            "the face is left out: it has less than three corners (2 times, this is the first)",
+        ]
+    );
+    let scene = loaded.scene.expect("warnings only");
+    let mesh = mesh(&scene.objects.0[0]);
+    assert_eq!(mesh.triangle_count(), 4);
+    // The group before counts on.
+    let n = look_down(&mesh, -1e-9, 0.5).n_shade;
+    assert!((n - DVec3::Z).length() < 1e-6, "{n}");
+}
+
+#[test]
+fn colours_of_vertices_are_remarked_upon() {
+    let text = "v 0 0 0 1\nv 1 0 0 1 0.5 0\nv 1 1 0 0 1 0\nf 1 2 3\n";
+    let loaded = load(text);
+    assert_eq!(
+        messages(&loaded),
+        [
+            "warning: the colours of the vertices are ignored\n --> part.obj:2:1\n  |\n2 | v 1 0 0 1 0.5 0\n  | ^\n  = help: materials do not vary from vertex to vertex; a texture does"
+        ]
+    );
+    assert!(loaded.scene.is_some());
+    assert_parts_make_no_difference(&text.repeat(20), super::read_with);
+}
+
+#[test]
+fn comments_may_touch_numbers() {
+    let touching = scene(
+        "v 0 0 0#a\nv 1 0 0 1# a\nv 0 1 0#\nvt 0 0#\nvn 0 0 1#\ns 1#\nf 1/1/1 2/1/1 3/1/1#c\n",
+    );
+    assert_eq!(mesh(&touching.objects.0[0]).triangle_count(), 1);
+    assert_eq!(material("Ns 20#\nKs 1 1 1#").finish.shininess, 20.0);
+}
+
+#[test]
+fn only_faces_need_finite_positions() {
+    let odd = "v nan 0 0\nvn -nan(ind) 0 1\nvn 1 1.#QNAN 0\nvt 0 inf\nvt 1e200 0\n";
+    let loaded = load(&format!("{odd}{SQUARE}f 2/1/1 3/2/2 4/1/1\n"));
+    assert_eq!(
+        loaded
+            .diagnostics
+            .iter()
+            .map(|d| d.message.as_str())
+            .collect::<Vec<_>>(),
+        [
+            "the position of a vertex is not a finite number: no face may use it",
+            "a normal that is not finite counts as none (2 times, this is the first)",
+            "texture coordinates that are not finite count as none (2 times, this is the first)",
+        ]
+    );
+    let scene = loaded.scene.expect("warnings only");
+    let point = look_down(&mesh(&scene.objects.0[0]), 0.75, 0.25);
+    assert_eq!((point.n_shade, point.uv), (DVec3::Z, DVec2::ZERO));
+    let used = load(&format!("{odd}{SQUARE}f 2 3 4 -5\n"));
+    assert_eq!(
+        messages(&used)[0],
+        "error: the position of vertex 1 is not a finite number\n  --> part.obj:10:9\n   |\n10 | f 2 3 4 -5\n   |         ^^"
     );
 }
 
@@ -325,8 +478,11 @@ fn what_libraries_lack_is_a_warning() {
 }
 
 #[test]
-fn errors_in_libraries_are_placed_there() {
-    let loaded = with_library("Kd 1 1 1\nnewmtl m\nKd 1 x 1\nd 2\nNi\nKs -1", "f 1 2 3\n");
+fn mistakes_in_libraries_are_warnings_that_are_placed_there() {
+    let loaded = with_library(
+        "Kd 1 1 1\nnewmtl m\nKd 1 x 1\nd 2\nNi\nKs -1",
+        "usemtl m\nf 1 2 3\n",
+    );
     let firsts: Vec<_> = loaded
         .diagnostics
         .iter()
@@ -335,20 +491,51 @@ fn errors_in_libraries_are_placed_there() {
     assert_eq!(
         firsts,
         [
-            "expected `newmtl`, found `Kd`",
-            "expected a number (a part of a colour), found `x`",
-            "d must be between 0 and 1, found `2`",
-            "expected a number (Ni, the index of refraction,), found the end of the line",
-            "a part of a colour must be at least 0, found `-1`",
+            "what comes before the first `newmtl` is ignored",
+            "expected a number (a part of a colour), found `x`: the statement is ignored (2 times, this is the first)",
+            "d must be between 0 and 1, found `2`: it counts as 1",
+            "a part of a colour must be at least 0, found `-1`: it counts as 0",
         ]
     );
     assert!(messages(&loaded)[1].contains("my colours.mtl:3:6\n"));
+    assert!(loaded.scene.is_some());
+}
+
+#[test]
+fn odd_values_of_materials_leave_something_sensible() {
+    let odd = |mtl: &str| {
+        let loaded = with_library(&format!("newmtl m\n{mtl}"), "usemtl m\nf 1 2 3\n");
+        assert_eq!(messages(&loaded).len(), 1, "{mtl}: {:?}", messages(&loaded));
+        let scene = loaded.scene.expect("warnings only");
+        Material::clone(scene.objects.0[0].material.as_ref().expect("found"))
+    };
+    let plain = material("Kd 0.5");
+    // Blender's hardness of 0.
+    assert_eq!(odd("Ns -1.960784").finish.shininess, 0.0);
+    for mtl in [
+        "Ns nan",
+        "Kd",
+        "Kd 1 1 x",
+        "Ks -1 0 0",
+        "d 1.000001",
+        "Tr -0.1",
+        "illum 11",
+        "illum -1",
+        "map_Kd",
+        "map_Kd -clamp on",
+        "map_d",
+        "Ni 0",
+    ] {
+        assert_eq!(odd(&format!("Kd 0.5\n{mtl}")), plain, "{mtl}");
+    }
+    assert_eq!(odd("illum 7\nNi 0").eta, 1.5);
+    assert!(odd("map_Kd -foo 1 0.5 maps/step.pgm").pbr.is_some());
 }
 
 /// Valid and invalid statements.
-const STATEMENTS: [&str; 28] = [
+const STATEMENTS: [&str; 29] = [
     SQUARE,
-    "v 0 0 1\r\nv 1 0 1\r\n",
+    "v 0 0 1\r\nv 1 0 1 0.5 0.5 1\r\n",
     "vt 0.5 0.5\nvn 0 0 1 \\\n\n",
     "f 1 2 3\n",
     "f 1 2 \\\n3 4\n",
@@ -374,6 +561,7 @@ const STATEMENTS: [&str; 28] = [
     "f 1 x 3\n",
     "v 1 2\n",
     "v 1 2 nan\n",
+    "f 1 2 3#\nfo 1 2 4\ns -1\n",
     "s loud\n",
 ];
 
@@ -384,7 +572,7 @@ proptest! {
         choices in prop::collection::vec(0..STATEMENTS.len(), 0..80),
         wrong in any::<bool>(),
     ) {
-        let right = STATEMENTS.len() - 8;
+        let right = STATEMENTS.len() - 9;
         let statements = choices.into_iter().map(|i| STATEMENTS[if wrong { i } else { i % right }]);
         let text: String = [SQUARE, STATEMENTS[2]].into_iter().chain(statements).collect();
         assert_parts_make_no_difference(&text, super::read_with);

@@ -3,6 +3,7 @@ use super::header::{Element, Encoding, Header, Property, Scalar};
 use super::positions::Positions;
 use super::source::{Source, list_length};
 use crate::input::report::{Fallible, Report};
+use crate::mesh::{COLORS_HINT, COLORS_IGNORED};
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 use strahl_scene::Diagnostic;
@@ -42,6 +43,8 @@ pub(super) struct Body<'h, 'r> {
     positions: Positions,
     normals: Option<Vec<[f32; 3]>>,
     uvs: Option<Vec<[f32; 2]>>,
+    /// Whether there are positions that are not finite.
+    has_odd_positions: bool,
     faces: Faces,
 }
 
@@ -100,8 +103,18 @@ impl<'h, 'r> Body<'h, 'r> {
         if has(&["red", "green", "blue"]) || has(&["diffuse_red", "diffuse_green", "diffuse_blue"])
         {
             report.warning(|| {
-                Diagnostic::warning(format!("`{name}`: the colours of the vertices are ignored"))
-                    .hint("materials do not vary from vertex to vertex; a texture does")
+                Diagnostic::warning(format!("`{name}`: {COLORS_IGNORED}")).hint(COLORS_HINT)
+            });
+        }
+        // MeshLab's coordinates of the corners of each face.
+        let has_wedges = header.elements.iter().any(|element| {
+            element.name == "face" && element.properties.iter().any(|p| p.name == "texcoord")
+        });
+        if has_wedges {
+            report.warning(|| {
+                let what = "the texture coordinates of the faces (`texcoord`) are ignored";
+                Diagnostic::warning(format!("`{name}`: {what}"))
+                    .hint("those of vertices (`s` and `t`) are read, and so are those of OBJ files")
             });
         }
         Ok(Self {
@@ -115,6 +128,7 @@ impl<'h, 'r> Body<'h, 'r> {
             },
             normals: has(&["nx", "ny", "nz"]).then(Vec::new),
             uvs: with_uv.then(Vec::new),
+            has_odd_positions: false,
             faces: Faces::default(),
         })
     }
@@ -181,18 +195,37 @@ impl<'h, 'r> Body<'h, 'r> {
                     (None, None) => source.skip(property.scalar, 1)?,
                 }
             }
-            if !values.iter().all(|x| x.is_finite()) {
-                let problem = Diagnostic::error(format!(
-                    "vertex {row} (counted from 0) has a value that is not a finite number"
-                ));
-                self.report.error(|| source.at_last(problem));
-                if self.report.is_hopeless() {
-                    return Ok(());
-                }
+            if !is_finite(&values[..NORMAL]) || !is_single(&values[NORMAL..]) {
+                self.mend(row, &mut values);
             }
             self.add_vertex(&values);
         }
         Ok(())
+    }
+
+    /// Makes what is not finite what counts as none; the position only if no face uses it.
+    #[cold]
+    fn mend(&mut self, row: u64, values: &mut [f64; VALUES]) {
+        let name = self.name;
+        let mut count = |what: &'static str| {
+            self.report.count(what, || {
+                Diagnostic::warning(format!(
+                    "`{name}`: {what}, as of vertex {row} (counted from 0)"
+                ))
+            });
+        };
+        if !is_finite(&values[..NORMAL]) {
+            count("positions that are not finite are left out");
+            self.has_odd_positions = true;
+        }
+        if !is_single(&values[NORMAL..UV]) {
+            count("normals that are not finite count as none");
+            values[NORMAL..UV].fill(0.0);
+        }
+        if !is_single(&values[UV..]) {
+            count("texture coordinates that are not finite count as none");
+            values[UV..].fill(0.0);
+        }
     }
 
     #[inline]
@@ -266,6 +299,11 @@ impl<'h, 'r> Body<'h, 'r> {
     /// The mesh.
     pub(super) fn finish(mut self) -> MeshData {
         let face_continues = self.faces.marks();
+        if let Some([first, ..]) = self.faces.triangles.first()
+            && self.has_odd_positions
+        {
+            self.positions.replace_not_finite(*first);
+        }
         let indices = self.faces.triangles;
         let data = match self.positions {
             Positions::Single(positions) => MeshData {
@@ -282,6 +320,15 @@ impl<'h, 'r> Body<'h, 'r> {
             ..data
         }
     }
+}
+
+fn is_finite(values: &[f64]) -> bool {
+    values.iter().all(|x| x.is_finite())
+}
+
+/// Whether the numbers are finite in single precision, too.
+fn is_single(values: &[f64]) -> bool {
+    values.iter().all(|x| (*x as f32).is_finite())
 }
 
 fn use_of(property: &Property) -> Use {

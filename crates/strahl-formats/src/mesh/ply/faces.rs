@@ -59,6 +59,7 @@ impl Faces {
             if polygon_normal(&corners).is_some() {
                 self.triangles.push(triangle);
             } else {
+                check_finite(&triangle, positions)?;
                 skipped(report, "it has no area");
             }
             return Ok(());
@@ -80,7 +81,12 @@ impl Faces {
                 self.triangles.extend(self.cut.iter().map(|t| t.map(at)));
                 self.continued.resize(self.triangles.len(), true);
             }
-            Err(why) => skipped(report, why),
+            Err(why) => {
+                // All indices have been checked.
+                let indices: Vec<_> = self.list.iter().map(|i| *i as u32).collect();
+                check_finite(&indices, positions)?;
+                skipped(report, why);
+            }
         }
         Ok(())
     }
@@ -106,10 +112,23 @@ impl Faces {
                 let triangle = if i % 2 == 0 { [a, b, c] } else { [b, a, c] };
                 if polygon_normal(&triangle.map(|i| positions.at(i))).is_some() {
                     self.triangles.push(triangle);
+                } else {
+                    check_finite(&triangle, positions)?;
                 }
             }
         }
         Ok(())
+    }
+}
+
+/// Refuses vertices without a finite position: polygons with them have no area.
+#[cold]
+fn check_finite(indices: &[u32], positions: &Positions) -> Result<(), String> {
+    match indices.iter().find(|i| !positions.at(**i).is_finite()) {
+        Some(vertex) => Err(format!(
+            "the position of vertex {vertex} is not a finite number"
+        )),
+        None => Ok(()),
     }
 }
 

@@ -6,7 +6,7 @@
 //! Read are `vertex` (`x y z`, `nx ny nz`, texture coordinates as `s t`, `u v`, `texture_u texture_v` or `texture_s
 //! texture_t`), `face` (`vertex_indices` or `vertex_index`; polygons are cut into triangles) and `tristrips` (`vertex_indices`
 //! with -1 between strips); scalars and lists of any type. Other elements and properties are skipped. Colours of vertices are
-//! ignored with a warning: materials don't vary by vertex. Faces must come after the vertices.
+//! ignored with a warning: materials don't vary by vertex. So are the texture coordinates of faces that MeshLab writes (`texcoord`). Faces must come after the vertices.
 //!
 //! Vertices declared `float` are kept as they are, those of other types are rounded to f32 relative to an anchor
 //! ([`MeshData::from_f64`](strahl_geometry::MeshData::from_f64)).
@@ -31,11 +31,7 @@ use strahl_scene::{Diagnostic, Object, Scene};
 /// Reads a mesh; errors and warnings go to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let mut scene = Scene::default();
-    let text = Text {
-        bytes: input.bytes,
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
+    let text = Text::new(input.bytes, input.name, scene.sources.add(input.name));
     if let Err(problem) = read_mesh(&text, &mut scene, report) {
         report.error(|| *problem);
     }

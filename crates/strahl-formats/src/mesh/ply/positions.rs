@@ -16,6 +16,23 @@ impl Positions {
         }
     }
 
+    /// Moves vertices that have no finite position to another one: no triangle uses them.
+    pub(super) fn replace_not_finite(&mut self, vertex: u32) {
+        let index = vertex as usize;
+        match self {
+            Self::Single(list) => {
+                let other = list[index];
+                let odd = list.iter_mut().filter(|p| !p.iter().all(|x| x.is_finite()));
+                odd.for_each(|p| *p = other);
+            }
+            Self::Double(list) => {
+                let other = list[index];
+                let odd = list.iter_mut().filter(|p| !p.is_finite());
+                odd.for_each(|p| *p = other);
+            }
+        }
+    }
+
     /// A vertex; the index has been checked.
     #[inline]
     pub(super) fn at(&self, index: u32) -> DVec3 {

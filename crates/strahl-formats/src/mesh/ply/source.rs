@@ -1,11 +1,11 @@
 use super::header::{Header, Scalar};
 use crate::input::Fallible;
-use crate::input::text::{Text, Words, parse_f32, parse_f64, parse_integer};
+use crate::input::text::{NumberError, Text, Words, parse_f32, parse_f64, parse_integer};
 use strahl_scene::Diagnostic;
 
 /// Where the numbers of the body come from.
 pub(super) trait Source {
-    /// The next number, exactly. Finite in ASCII, anything in binary.
+    /// The next number, exactly; it need not be finite.
     fn number(&mut self, scalar: Scalar) -> Fallible<f64>;
 
     /// The next number, which is of an integer type.
@@ -47,7 +47,11 @@ impl Source for Ascii<'_> {
             Scalar::F32 => parse_f32(word.bytes).map(f64::from),
             _ => parse_f64(word.bytes),
         };
-        parsed.map_err(|e| Box::new(self.text.at(&word, e.describe(&word, what))))
+        match parsed {
+            Ok(number) => Ok(number),
+            Err(NumberError::NotFinite) => Ok(f64::NAN),
+            Err(e) => Err(Box::new(self.text.at(&word, e.describe(&word, what)))),
+        }
     }
 
     fn integer(&mut self, _scalar: Scalar) -> Fallible<i64> {

@@ -1,6 +1,7 @@
 use crate::scene::{Loaded, SceneFormat, load_bytes};
 use std::sync::Arc;
-use strahl_geometry::{Shape, TriangleMesh};
+use strahl_geometry::{Primitive, Shape, TriangleMesh};
+use strahl_math::DVec3;
 use strahl_scene::ObjectKind;
 
 fn load(bytes: impl Into<Vec<u8>>) -> Loaded {
@@ -26,7 +27,7 @@ fn mesh(loaded: &Loaded) -> Arc<TriangleMesh> {
 const SQUARE: &str = "ply\nformat ascii 1.0\ncomment a square and a list of nothing\nobj_info x\n\
     element material 1\nproperty list uchar float ramp\nproperty int id\n\
     element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar quality\n\
-    element face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n\
+    element face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\nproperty list uchar float weights\n\
     element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n\
     3 0.1 0.2 0.3 7\n0 0 0 255\n1 0 0 255\n1 1 0 255\n0 1 0 255\n1 4 0 1 2 3 2 0 0\n0 3 0 2 1 0\n0 1\n";
 
@@ -162,7 +163,7 @@ fn wrong_rows_are_named() {
     );
     assert!(
         message("1 1 0 255", "1 nan 0 255")
-            .contains("expected a number, found `nan`, which is not a finite number")
+            .contains("face 0 (counted from 0): the position of vertex 2 is not a finite number")
     );
     assert!(
         message("3 0 2 1 0", "-3 0 2 1 0")
@@ -184,8 +185,46 @@ fn wrong_rows_are_named() {
     nan[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     assert_eq!(
         messages(&load(nan))[0],
-        "error: `models/part.ply`: vertex 0 (counted from 0) has a value that is not a finite number"
+        "error: `models/part.ply`: face 0 (counted from 0): the position of vertex 0 is not a finite number"
     );
+}
+
+#[test]
+fn only_faces_need_finite_positions() {
+    // Vertex 0 is not used, vertex 2 has no normal, vertex 3 no texture coordinates.
+    let text = |kind: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty {kind} y\nproperty float z\n\
+             property float nx\nproperty double ny\nproperty float nz\nproperty float u\nproperty float v\n\
+             element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+             0 -nan(ind) inf 0 0 1 0 0\n0 0 0 0 0 1 0 0\n1 0 0 nan 1e200 nan 0 0\n0 1 0 0 0 1 1 nan\n3 1 2 3\n"
+        )
+    };
+    for kind in ["float", "double"] {
+        let loaded = load(text(kind));
+        assert_eq!(
+            messages(&loaded),
+            [
+                "warning: `models/part.ply`: positions that are not finite are left out, as of vertex 0 (counted from 0)",
+                "warning: `models/part.ply`: normals that are not finite count as none, as of vertex 2 (counted from 0)",
+                "warning: `models/part.ply`: texture coordinates that are not finite count as none, as of vertex 3 (counted from 0)",
+            ]
+        );
+        let bounds = mesh(&loaded).bounds();
+        assert_eq!(
+            (bounds.min, bounds.max),
+            (DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0))
+        );
+    }
+    for face in ["3 1 0 2", "4 1 2 3 0"] {
+        let used = messages(&load(
+            text("float").replace("3 1 2 3\n", &format!("{face}\n")),
+        ));
+        assert!(
+            used[0].contains("the position of vertex 0 is not a finite number"),
+            "{used:?}"
+        );
+    }
 }
 
 #[test]
@@ -250,6 +289,12 @@ fn clouds_and_colours_are_remarked_upon() {
     assert!(
         mesh(&loaded).triangle_count() == 3
             && messages(&loaded)[0].contains("the colours of the vertices are ignored")
+    );
+    let wedges = load(SQUARE.replace("float weights", "float texcoord"));
+    assert!(
+        mesh(&wedges).triangle_count() == 3
+            && messages(&wedges)[0]
+                .contains("the texture coordinates of the faces (`texcoord`) are ignored")
     );
     let flat = load(SQUARE.replace("3 0 2 1 0", "3 0 2 2 0"));
     assert!(messages(&flat)[0].contains("face 1 (counted from 0) is left out: it has no area"));

@@ -5,6 +5,9 @@
 //! welded to one vertex, exactly: no tolerance joins what is merely close. The normals in the file are ignored in favour of
 //! the corners' order (they agree, or the file is wrong), so is the attribute that some programs keep colours in.
 //! Every `solid` of an ASCII file becomes a mesh of its own name.
+//!
+//! Of ASCII files more is read than there should be: lines of comments (`#`), `color` lines between facets, `end loop` for
+//! `endloop`, a Ctrl-Z at the end; and the last `endsolid` may be missing.
 
 use crate::input::Input;
 use crate::input::report::{Fallible, Report};
@@ -14,7 +17,7 @@ use hashbrown::HashMap;
 use std::sync::Arc;
 use strahl_geometry::{MeshData, TriangleMesh};
 use strahl_math::DVec3;
-use strahl_scene::{Diagnostic, Object, Scene, Span};
+use strahl_scene::{Diagnostic, Object, Scene, Severity, Span};
 
 /// Bytes before the triangles, and of a triangle.
 const HEADER: usize = 84;
@@ -29,19 +32,9 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let expected = expected
         .map(|count| HEADER as u64 + TRIANGLE as u64 * u64::from(u32::from_le_bytes(*count)));
     let size = input.bytes.len() as u64;
-    let begins_with_solid = begins_with_solid(input.bytes);
-    // Some programs fill the last block of a text with zeros.
-    let zeros = input
-        .bytes
-        .iter()
-        .rev()
-        .take_while(|byte| **byte == 0)
-        .count();
-    let text = Text {
-        bytes: &input.bytes[..input.bytes.len() - zeros],
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
+    let (text, zeros) = without_padding(input.bytes);
+    let text = Text::new(text, input.name, scene.sources.add(input.name));
+    let begins_with_solid = begins_with_solid(text.bytes);
     let is_ascii = expected != Some(size) && begins_with_solid && !text.is_binary();
     match expected {
         _ if is_ascii => {
@@ -62,6 +55,12 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
             // Not more than the file has, so it fits.
             binary(input, &input.bytes[HEADER..expected as usize], &mut scene, report);
         }
+        Some(_) if !begins_with_solid && !text.is_binary() => report.error(|| {
+            Diagnostic::error(format!(
+                "`{}` is not an STL file: it is a text whose first word is not `solid`",
+                input.name
+            ))
+        }),
         Some(expected) => report.error(|| {
             let promised = (expected - HEADER as u64) / TRIANGLE as u64;
             let there = (size - HEADER as u64) / TRIANGLE as u64;
@@ -85,10 +84,25 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     scene
 }
 
+/// Without what some programs fill the last block of a text with: zeros, whose number is returned, and the Ctrl-Z that ends
+/// texts of old systems, with the blanks around it.
+fn without_padding(bytes: &[u8]) -> (&[u8], usize) {
+    let is_zero = |byte: &&u8| **byte == 0;
+    let zeros = bytes.iter().rev().take_while(is_zero).count();
+    let text = &bytes[..bytes.len() - zeros];
+    let is_end = |byte: &&u8| **byte == 0x1a || byte.is_ascii_whitespace();
+    let ends = text.iter().rev().take_while(is_end).count();
+    (&text[..text.len() - ends], zeros)
+}
+
+/// Whether the first word that is not in a comment begins with `solid`.
 fn begins_with_solid(bytes: &[u8]) -> bool {
-    bytes
-        .trim_ascii_start()
-        .get(..5)
+    let mut rest = bytes.trim_ascii_start();
+    while rest.starts_with(b"#") {
+        let end = rest.iter().position(|b| matches!(b, b'\n' | b'\r'));
+        rest = rest[end.unwrap_or(rest.len())..].trim_ascii_start();
+    }
+    rest.get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
@@ -182,7 +196,7 @@ fn nothing(name: &str, scene: &Scene, report: &mut Report) {
 fn ascii(text: Text<'_>, scene: &mut Scene, report: &mut Report) {
     let mut reader = Ascii {
         text,
-        words: text.words(0, 1).without_comments(),
+        words: text.words(0, 1),
         weld: Weld::default(),
     };
     while let Some(word) = reader.words.next() {
@@ -221,11 +235,29 @@ impl<'a> Ascii<'a> {
     fn solid(&mut self, report: &mut Report) -> Fallible<()> {
         loop {
             let Some(word) = self.words.next() else {
-                return Err(Box::new(self.words.expected("`facet` or `endsolid`")));
+                let problem = self.words.expected("`facet` or `endsolid`");
+                if self.weld.data.indices.is_empty() {
+                    return Err(Box::new(problem));
+                }
+                // All facets are complete.
+                report.warning(|| Diagnostic {
+                    severity: Severity::Warning,
+                    message: "`endsolid` is missing at the end of the file".into(),
+                    ..problem
+                });
+                return Ok(());
             };
-            if is(&word, "endsolid") {
+            if self.ends(&word, "solid") {
                 self.words.skip_line();
                 return Ok(());
+            }
+            if is(&word, "color") {
+                self.words.skip_line();
+                let text = self.text;
+                report.count("color", || {
+                    text.at(&word, Diagnostic::warning("colours are ignored"))
+                });
+                continue;
             }
             if !is(&word, "facet") {
                 return Err(Box::new(wrong(self.text, &word, "`facet` or `endsolid`")));
@@ -241,8 +273,8 @@ impl<'a> Ascii<'a> {
                     *coordinate = self.number()?;
                 }
             }
-            self.expect("endloop")?;
-            self.expect("endfacet")?;
+            self.expect_end("loop")?;
+            self.expect_end("facet")?;
             if self.weld.add(corners) {
                 self.weld
                     .data
@@ -258,6 +290,32 @@ impl<'a> Ascii<'a> {
                     )
                 });
             }
+        }
+    }
+
+    /// Whether a word is `endloop`, `endfacet` or `endsolid`, which some programs write as two words: the second is taken, too.
+    fn ends(&mut self, word: &Word<'_>, what: &str) -> bool {
+        let glued = word.bytes.len() == 3 + what.len()
+            && word.bytes[..3].eq_ignore_ascii_case(b"end")
+            && word.bytes[3..].eq_ignore_ascii_case(what.as_bytes());
+        let apart = !glued
+            && is(word, "end")
+            && self
+                .words
+                .peek_in_line()
+                .is_some_and(|next| is(&next, what));
+        if apart {
+            self.words.next();
+        }
+        glued || apart
+    }
+
+    fn expect_end(&mut self, of: &str) -> Fallible<()> {
+        let what = format!("`end{of}`");
+        match self.words.next() {
+            Some(word) if self.ends(&word, of) => Ok(()),
+            Some(word) => Err(Box::new(wrong(self.text, &word, &what))),
+            None => Err(Box::new(self.words.expected(&what))),
         }
     }
 

@@ -134,6 +134,68 @@ fn zeros_behind_a_text_are_ignored_with_a_warning() {
 }
 
 #[test]
+fn ascii_files_may_be_untidy() {
+    let tidy = "solid a #1\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n\
+        facet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 1\nvertex 0 1 1\nendloop\nendfacet\nendsolid a #1\n";
+    let said = |text: &str| {
+        let loaded = load(text);
+        assert_eq!(
+            meshes(&loaded)
+                .iter()
+                .map(|(name, mesh)| (name.as_str(), mesh.triangle_count()))
+                .collect::<Vec<_>>(),
+            [("a #1", 2)],
+            "{text}"
+        );
+        loaded
+            .diagnostics
+            .into_iter()
+            .map(|d| d.message)
+            .collect::<Vec<_>>()
+    };
+    for text in [
+        tidy.to_owned(),
+        format!("# made by hand\r\n\n#\n{tidy}"),
+        tidy.replace("facet normal", "# facet\nfacet normal"),
+        tidy.replace("endloop", "end loop")
+            .replace("endfacet", "End Facet"),
+        tidy.replace("endsolid", "end solid"),
+        format!("{tidy}\x1a\x1a\r\n"),
+        format!("{tidy}# the end\x1a"),
+    ] {
+        assert_eq!(said(&text), [""; 0], "{text}");
+    }
+    let colours = tidy.replace("facet normal", "color 1 0 0\nfacet normal");
+    assert_eq!(
+        said(&colours),
+        ["colours are ignored (2 times, this is the first)"]
+    );
+    let open = tidy.replace("endsolid a #1\n", "");
+    assert_eq!(
+        said(&open),
+        ["`endsolid` is missing at the end of the file"]
+    );
+    // But a facet must be complete.
+    for end in ["endfacet\n", "endloop\nendfacet\n"] {
+        let cut = open.strip_suffix(end).expect("the end");
+        assert!(load(cut).scene.is_none(), "{cut}");
+    }
+    assert!(load(tidy.replacen("endloop", "end", 1)).scene.is_none());
+    let other = format!("shape a\n{}", &tidy[11..]);
+    assert_eq!(
+        messages(&load(other)),
+        ["error: `part.stl` is not an STL file: it is a text whose first word is not `solid`"]
+    );
+}
+
+#[test]
+fn a_byte_order_mark_in_a_binary_header_is_one_of_its_bytes() {
+    let loaded = load(binary("\u{feff}made by a test", &TETRAHEDRON));
+    assert_eq!(messages(&loaded), [""; 0]);
+    assert_eq!(meshes(&loaded)[0].1.triangle_count(), 4);
+}
+
+#[test]
 fn damaged_binary_files_are_named() {
     let mut cut = binary("", &TETRAHEDRON);
     cut.truncate(cut.len() - 60);

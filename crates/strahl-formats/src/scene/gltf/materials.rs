@@ -4,10 +4,11 @@ use crate::input::textures::TextureFiles;
 use crate::input::{Input, Report};
 use gltf_json::Root;
 use gltf_json::extensions::material::Material as Extensions;
+use gltf_json::extensions::texture::Texture as TextureExtensions;
 use gltf_json::material::AlphaMode;
 use gltf_json::texture::{Info, MagFilter, WrappingMode};
 use gltf_json::validation::Checked;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use strahl_math::det;
 use strahl_scene::Diagnostic;
@@ -17,6 +18,9 @@ use strahl_shade::{Color, Material, Pbr, Sides, TextureRef, Textures};
 /// The smallest transmittance of a volume over its attenuation distance: 0 would need infinite absorption.
 const DARKEST: f64 = 1e-6;
 
+/// What the crate has for the `source` of a texture that has none.
+const NO_SOURCE: usize = u32::MAX as usize;
+
 /// Creates materials and reads textures, each once.
 pub(super) struct Materials<'a> {
     root: &'a Root,
@@ -25,6 +29,8 @@ pub(super) struct Materials<'a> {
     files: TextureFiles<'a>,
     known: HashMap<usize, Arc<Material>>,
     images: HashMap<(usize, TextureUse), Option<Arc<TextureImage>>>,
+    /// The textures without a picture that were reported.
+    without_source: HashSet<usize>,
 }
 
 /// A reference to a texture, with the transformation of its coordinates.
@@ -43,6 +49,7 @@ impl<'a> Materials<'a> {
             files: TextureFiles::new(input.folder),
             known: HashMap::new(),
             images: HashMap::new(),
+            without_source: HashSet::new(),
         }
     }
 
@@ -237,7 +244,12 @@ impl<'a> Materials<'a> {
             return None;
         }
         let texture = self.root.textures.get(found.texture)?;
-        let image = self.image(texture.source.value(), texture_use, report)?;
+        let source = texture.source.value();
+        if source == NO_SOURCE {
+            self.without_source(found.texture, texture.extensions.as_ref(), report);
+            return None;
+        }
+        let image = self.image(source, texture_use, report)?;
         let sampler = texture
             .sampler
             .and_then(|s| self.root.samplers.get(s.value()));
@@ -259,6 +271,36 @@ impl<'a> Materials<'a> {
             },
             uv_map: found.uv_map,
         })
+    }
+
+    /// Says, once, that a texture has no picture, or only such of extensions (compressed ones, mostly).
+    fn without_source(
+        &mut self,
+        index: usize,
+        extensions: Option<&TextureExtensions>,
+        report: &mut Report,
+    ) {
+        if !self.without_source.insert(index) {
+            return;
+        }
+        let names: Vec<_> = extensions
+            .iter()
+            .flat_map(|e| e.others.keys())
+            .take(10)
+            .map(|name| format!("`{}`", shown(name)))
+            .collect();
+        let why = if names.is_empty() {
+            "it has no `source`".to_owned()
+        } else {
+            let names = names.join(", ");
+            format!("it has a picture only by an extension that is not supported: {names}")
+        };
+        report.warning(|| {
+            Diagnostic::warning(format!(
+                "`{}`: texture {index} is left out: {why}",
+                self.name
+            ))
+        });
     }
 
     fn image(

@@ -80,6 +80,13 @@ impl<'a> Meshes<'a> {
         });
     }
 
+    /// A warning about many vertices, of which the first is named by its number in the file.
+    fn warn_of(&self, report: &mut Report, what: &'static str, vertex: usize) {
+        report.count(what, || {
+            Diagnostic::warning(format!("`{}`: {what}, as of vertex {vertex}", self.name))
+        });
+    }
+
     fn primitive(
         &mut self,
         primitive: &Primitive,
@@ -202,10 +209,21 @@ impl<'a> Meshes<'a> {
             let vertex = vertex as usize;
             data.positions.push(positions.get::<3>(vertex).map(single));
             if let (Some(list), Some(normals)) = (&mut data.normals, &normals) {
-                list.push(normals.get::<3>(vertex).map(single));
+                let normal = normals.get::<3>(vertex).map(single);
+                let normal = finite_or_zero(normal).unwrap_or_else(|zero| {
+                    self.warn_of(report, "normals that are not finite count as none", vertex);
+                    zero
+                });
+                list.push(normal);
             }
             if let (Some(list), Some(uvs)) = (&mut data.uvs, &uvs) {
-                list.push(uvs.get::<2>(vertex).map(single));
+                let uv = uvs.get::<2>(vertex).map(single);
+                let uv = finite_or_zero(uv).unwrap_or_else(|zero| {
+                    let what = "texture coordinates that are not finite count as none";
+                    self.warn_of(report, what, vertex);
+                    zero
+                });
+                list.push(uv);
             }
         }
         if triangles.is_empty() {
@@ -215,6 +233,15 @@ impl<'a> Meshes<'a> {
         TriangleMesh::try_new(data)
             .map(|mesh| Some(Arc::new(mesh)))
             .map_err(|e| e.to_string())
+    }
+}
+
+/// The numbers, or as many zeros if one of them is not finite.
+fn finite_or_zero<const N: usize>(numbers: [f32; N]) -> Result<[f32; N], [f32; N]> {
+    if numbers.iter().all(|x| x.is_finite()) {
+        Ok(numbers)
+    } else {
+        Err([0.0; N])
     }
 }
 

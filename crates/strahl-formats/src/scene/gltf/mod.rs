@@ -30,17 +30,35 @@ use gltf_json::validation::{Error, Validate};
 use gltf_json::{Path as JsonPath, Root};
 use strahl_scene::{Diagnostic, Scene};
 
-/// The extensions that are understood, or may be ignored without harm even if they are required.
-const EXTENSIONS: [&str; 9] = [
+/// The extensions that are understood, or may be ignored without harm even if they are required: those of other variants
+/// of materials, and of notes about the file.
+const EXTENSIONS: [&str; 11] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
+    "KHR_xmp_json_ld",
+];
+
+/// The extensions that store meshes in a form that is not read.
+const OF_MESHES: [&str; 3] = [
+    "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
+    "KHR_meshopt_compression",
+];
+
+/// The extensions that store pictures in a form that is not read.
+const OF_PICTURES: [&str; 4] = [
+    "EXT_texture_avif",
+    "EXT_texture_webp",
+    "KHR_texture_basisu",
+    "MSFT_texture_dds",
 ];
 
 /// Reads a scene; errors and warnings go to the report.
@@ -54,11 +72,7 @@ pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
             return scene;
         }
     };
-    let text = Text {
-        bytes: json,
-        name: input.name,
-        file,
-    };
+    let text = Text::new(json, input.name, file);
     let Some(root) = root(text, report) else {
         return scene;
     };
@@ -136,35 +150,34 @@ fn number(header: &[u8; 8], at: usize) -> u32 {
 
 /// Reads and checks the JSON.
 fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
-    // Some programs write a byte order mark, which JSON does not allow.
-    let bytes = text
-        .bytes
-        .strip_prefix(b"\xef\xbb\xbf")
-        .unwrap_or(text.bytes);
-    let text = Text { bytes, ..text };
-    let mut root = match Root::from_slice(bytes) {
+    let mut root = match Root::from_slice(text.bytes) {
         Ok(root) => root,
         Err(error) => {
             report.error(|| syntax_error(text, &error));
             return None;
         }
     };
-    let unknown: Vec<_> = root
-        .extensions_required
-        .iter()
-        .filter(|e| !EXTENSIONS.contains(&e.as_str()))
-        .collect();
-    if !unknown.is_empty() {
-        let names: Vec<_> = unknown.iter().take(10).map(|e| format!("`{e}`")).collect();
+    let needed = not_understood(&root.extensions_required);
+    if !needed.is_empty() {
         report.error(|| {
             Diagnostic::error(format!(
                 "`{}` needs extensions that are not supported: {}",
                 text.name,
-                names.join(", ")
+                listed(&needed)
             ))
-            .hint("export it without them; compressed meshes and textures are not supported")
+            .hint(what_to_do_without(&needed))
         });
         return None;
+    }
+    let ignored = not_understood(&root.extensions_used);
+    if !ignored.is_empty() {
+        report.warning(|| {
+            Diagnostic::warning(format!(
+                "`{}`: extensions that are not supported are ignored: {}",
+                text.name,
+                listed(&ignored)
+            ))
+        });
     }
     // The crate's own list of supported extensions is shorter than ours.
     root.extensions_required.clear();
@@ -199,9 +212,12 @@ fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
         JsonPath::new,
         &mut |path: &dyn Fn() -> JsonPath, error: Error| {
             let path = path();
-            // Missing bounds are harmless here.
+            // Bounds are not needed, and a texture without a picture is left out where it is used.
+            let field = path.as_str();
             let harmless = error == Error::Missing
-                && (path.as_str().ends_with(".min") || path.as_str().ends_with(".max"));
+                && (field.ends_with(".min")
+                    || field.ends_with(".max")
+                    || (field.starts_with("textures[") && field.ends_with(".source")));
             if !harmless {
                 report.error(|| {
                     Diagnostic::error(format!("`{}`: {path}: {}", text.name, in_words(error)))
@@ -210,6 +226,42 @@ fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
         },
     );
     (!report.has_errors()).then_some(root)
+}
+
+/// The extensions that are not understood, each once.
+fn not_understood(names: &[String]) -> Vec<&str> {
+    let mut unknown: Vec<&str> = names.iter().map(String::as_str).collect();
+    unknown.retain(|name| !EXTENSIONS.contains(name));
+    unknown.sort_unstable();
+    unknown.dedup();
+    unknown
+}
+
+/// The first ten names for a message.
+fn listed(names: &[&str]) -> String {
+    const MOST: usize = 10;
+    let shown: Vec<_> = names
+        .iter()
+        .take(MOST)
+        .map(|name| format!("`{}`", buffers::shown(name)))
+        .collect();
+    let more = if names.len() > MOST { ", ..." } else { "" };
+    format!("{}{more}", shown.join(", "))
+}
+
+/// What to do if these extensions are needed.
+fn what_to_do_without(names: &[&str]) -> &'static str {
+    let has = |known: &[&str]| names.iter().any(|name| known.contains(name));
+    match (has(&OF_MESHES), has(&OF_PICTURES)) {
+        (true, true) => {
+            "export it without them, with meshes that are not compressed and pictures as PNG or JPEG"
+        }
+        (true, false) => "export it without compression of meshes",
+        (false, true) => "export it with pictures as PNG or JPEG",
+        (false, false) => {
+            "export it without them, or take their names out of `extensionsRequired`: what they describe is ignored then"
+        }
+    }
 }
 
 fn in_words(error: Error) -> &'static str {

@@ -7,9 +7,10 @@ use gltf_json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type
 use gltf_json::scene::Node;
 use gltf_json::validation::Checked;
 use std::f64::consts::PI;
+use strahl_geometry::Primitive;
 use strahl_math::{DAffine3, DMat3, DQuat, DVec3, Transform, det};
 use strahl_scene::{
-    Camera, Diagnostic, GroupId, Object, ObjectExt, Projection, Scene, SceneLight, Span,
+    Camera, Diagnostic, GroupId, Object, ObjectExt, ObjectKind, Projection, Scene, SceneLight, Span,
 };
 use strahl_shade::{Color, Falloff, Light, LightKind};
 
@@ -143,7 +144,8 @@ impl Nodes<'_, '_> {
     }
 
     fn add(&mut self, objects: Vec<Object>, node: &str, named: bool, world: &DAffine3) {
-        let Ok(transform) = Transform::try_new(world.matrix3, world.translation) else {
+        let transform = Transform::try_new(world.matrix3, world.translation);
+        let Some(transform) = transform.ok().or_else(|| self.flat(&objects, world)) else {
             let name = self.name;
             self.report.count("singular", || {
                 let problem =
@@ -160,6 +162,40 @@ impl Nodes<'_, '_> {
                 object
             };
             self.scene.objects.0.push(object.transformed(&transform));
+        }
+    }
+
+    /// The transformation of what is flat in a plane of coordinates already, where only the axis across it has the scale 0:
+    /// with any other scale there it looks the same. This one keeps the order of corners, by which
+    /// the front is known.
+    fn flat(&self, objects: &[Object], world: &DAffine3) -> Option<Transform> {
+        let [x, y, z] = [0, 1, 2].map(|i| world.matrix3.col(i));
+        let (axis, a, b) = match [x, y, z].map(|column| column == DVec3::ZERO) {
+            [true, false, false] => (0, y, z),
+            [false, true, false] => (1, z, x),
+            [false, false, true] => (2, x, y),
+            _ => return None,
+        };
+        if !objects.iter().all(|object| self.is_flat(object, axis)) {
+            return None;
+        }
+        let mut linear = world.matrix3;
+        *linear.col_mut(axis) = a.cross(b).try_normalize()? * a.length();
+        Transform::try_new(linear, world.translation).ok()
+    }
+
+    /// Whether a mesh, or a group of them, has the coordinate 0 along an axis everywhere.
+    fn is_flat(&self, object: &Object, axis: usize) -> bool {
+        match &object.kind {
+            ObjectKind::Shape(shape) => {
+                let bounds = shape.bounds();
+                bounds.min[axis] == 0.0 && bounds.max[axis] == 0.0
+            }
+            ObjectKind::Instance(group) => {
+                let group = self.scene.groups.get(group.0 as usize);
+                group.is_some_and(|g| g.objects.0.iter().all(|o| self.is_flat(o, axis)))
+            }
+            _ => false,
         }
     }
 

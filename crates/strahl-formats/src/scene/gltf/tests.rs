@@ -164,6 +164,34 @@ fn sparse_and_normalized_accessors_are_read() {
     );
 }
 
+#[test]
+fn normals_that_are_not_finite_count_as_none() {
+    // The triangle uses vertices 1, 2 and 3.
+    let mut buffer = square();
+    let (nan, z) = (f32::NAN, [0.0, 0.0, 1.0]);
+    buffer.extend(floats([[nan; 3], z, z, [0.0, nan, 0.0]].as_flattened()));
+    buffer.extend(floats(&[0.0, 0.0, f32::INFINITY, 0.0, 0.5, 0.5, 1.0, 1.0]));
+    buffer.extend([1, 2, 3, 0]);
+    let accessors = format!(
+        r#"{POSITIONS},{{"bufferView":1,"componentType":5126,"count":4,"type":"VEC3"}},
+        {{"bufferView":2,"componentType":5126,"count":4,"type":"VEC2"}},{{"bufferView":3,"componentType":5121,"count":3,"type":"SCALAR"}}"#
+    );
+    let rest = format!(
+        r#""meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"indices":3}}]}}],{ONE_NODE}"#
+    );
+    let loaded = load(&file(&buffer, &[0, 48, 96, 128], &accessors, &rest));
+    assert_eq!(
+        messages(&loaded),
+        [
+            "warning: `a.gltf`: texture coordinates that are not finite count as none, as of vertex 1",
+            "warning: `a.gltf`: normals that are not finite count as none, as of vertex 3",
+        ]
+    );
+    let scene = loaded.scene.expect("warnings only");
+    let corner = mesh(&scene.objects.0[0]).surface_at_element(0, [0.0, 1.0]);
+    assert_eq!((corner.n_shade, corner.uv), (DVec3::Z, DVec2::ONE));
+}
+
 const TRIANGLE: &str = r#""meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}]"#;
 const THREE: &str =
     r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}"#;
@@ -244,6 +272,28 @@ fn a_flattened_node_is_left_out() {
         "",
     ));
     assert!(messages(&loaded)[1].contains("`flat` is left out: its transformation flattens it"));
+}
+
+#[test]
+fn what_is_flat_may_be_flattened() {
+    // The triangle lies in z = 0; the second node mirrors it.
+    let single = scene(&with_nodes(r#"{"scale":[2,3,0],"mesh":0}"#, ""));
+    let twice = scene(&with_nodes(
+        r#"{"scale":[2,3,0],"mesh":0,"children":[1]},{"scale":[-1,1,1],"mesh":0}"#,
+        "",
+    ));
+    let corner = DVec3::new(1.0, 1.0, 0.0);
+    for (object, x) in [
+        (&single.objects.0[0], 2.0),
+        (&twice.objects.0[0], 2.0),
+        (&twice.objects.0[1], -2.0),
+    ] {
+        let to_world = object.transform.as_ref().expect("transformed");
+        assert_eq!(to_world.point_to_world(corner), DVec3::new(x, 3.0, 0.0));
+    }
+    assert_eq!(twice.objects.0.len(), 2);
+    let line = load(&with_nodes(r#"{"scale":[2,0,0],"mesh":0}"#, ""));
+    assert!(messages(&line)[1].contains("its transformation flattens it"));
 }
 
 #[test]
@@ -509,6 +559,35 @@ fn pictures_that_cannot_be_had_are_warnings() {
 }
 
 #[test]
+fn a_texture_without_a_source_is_left_out() {
+    let emissive = r#"{"emissiveTexture":{"index":0},"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#;
+    for (texture, why) in [
+        ("{}", "it has no `source`"),
+        (
+            r#"{"extensions":{"KHR_texture_basisu":{"source":0}}}"#,
+            "it has a picture only by an extension that is not supported: `KHR_texture_basisu`",
+        ),
+    ] {
+        let rest = format!(r#","images":[{}],"textures":[{texture}]"#, picture());
+        let loaded = load(&with_material(emissive, &rest));
+        assert_eq!(
+            messages(&loaded),
+            [format!("warning: `a.gltf`: texture 0 is left out: {why}")]
+        );
+        let scene = loaded.scene.expect("a warning only");
+        let material = scene.objects.0[0].material.as_ref().expect("one");
+        assert!(pbr(material).textures.base_color.is_none());
+    }
+    // A number of a picture that does not exist is an error as before.
+    let wrong = load(&with_material(emissive, r#","textures":[{"source":3}]"#));
+    assert!(
+        messages(&wrong)[0].contains("textures[0].source: the index is out of range"),
+        "{:?}",
+        messages(&wrong)
+    );
+}
+
+#[test]
 fn files_beside_the_scene_are_read() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::create_dir(folder.path().join("my data")).expect("made");
@@ -631,11 +710,41 @@ fn what_is_no_gltf_is_one_error() {
         messages(&draco),
         [
             "error: `a.gltf` needs extensions that are not supported: `KHR_draco_mesh_compression`\n  \
-          = help: export it without them; compressed meshes and textures are not supported"
+          = help: export it without compression of meshes"
         ]
     );
     let fine = load(r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_volume"]}"#);
     assert_eq!(messages(&fine), ["warning: `a.gltf` has no objects"]);
+}
+
+#[test]
+fn extensions_that_are_ignored_are_named() {
+    let used =
+        |names: &str| with_nodes(r#"{"mesh":0}"#, &format!(r#","extensionsUsed":[{names}]"#));
+    let loaded = load(&used(
+        r#""KHR_texture_transform","KHR_materials_sheen","KHR_materials_pbrSpecularGlossiness","KHR_materials_sheen","KHR_xmp_json_ld""#,
+    ));
+    assert!(loaded.scene.is_some());
+    assert_eq!(
+        messages(&loaded),
+        [
+            "warning: `a.gltf`: extensions that are not supported are ignored: `KHR_materials_pbrSpecularGlossiness`, `KHR_materials_sheen`"
+        ]
+    );
+    let many: Vec<_> = (10..22).map(|i| format!(r#""X_{i}""#)).collect();
+    assert!(messages(&load(&used(&many.join(","))))[0].ends_with("`X_19`, ..."));
+    // The reason fits the extension.
+    for (name, hint) in [
+        ("EXT_texture_webp", "export it with pictures as PNG or JPEG"),
+        (
+            "KHR_materials_clearcoat",
+            "take their names out of `extensionsRequired`",
+        ),
+    ] {
+        let json = format!(r#"{{"asset":{{"version":"2.0"}},"extensionsRequired":["{name}"]}}"#);
+        let all = messages(&load(&json));
+        assert!(all.len() == 1 && all[0].contains(hint), "{all:?}");
+    }
 }
 
 #[test]

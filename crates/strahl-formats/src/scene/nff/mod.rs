@@ -49,11 +49,7 @@ pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
 fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Parts>) -> Scene {
     let mut scene = Scene::default();
     scene.settings.shading = ShadingModel::Phong;
-    let text = Text {
-        bytes: input.bytes,
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
+    let text = Text::new(input.bytes, input.name, scene.sources.add(input.name));
     if text.refuse_binary("an NFF scene", report) {
         return scene;
     }
