@@ -123,3 +123,34 @@ fn no_ray_slips_through_an_edge() {
         assert_eq!(lost, 0, "{levels} levels of size {size} at {place}");
     }
 }
+
+/// A scanned mesh of a few metres, given in the metres of a map.
+#[test]
+fn meshes_far_from_the_origin_cost_no_more_tests_than_those_near_it() {
+    let tests = |places: &[DVec3]| {
+        let meshes: Vec<_> = places.iter().map(|&p| star(5, 1.0, p)).collect();
+        let scene = meshes.iter().fold(Scene::new(), |scene, mesh| {
+            scene.add(Object::from(Shape::from(mesh.clone())))
+        });
+        let scene = compiled(&scene);
+        let mut tracer = Intersector::new(&scene);
+        let mut numbers = Numbers(3);
+        for (&place, mesh) in places.iter().zip(&meshes) {
+            for _ in 0..500 {
+                let triangle = numbers.next() as u32 % mesh.triangle_count();
+                let [a, b, c] = mesh.corners(triangle);
+                let way = (a + b + c) / 3.0 - place;
+                let ray = Ray::new(place + way * 10.0, -way);
+                let hit = tracer.closest_hit(&ray, Interval::FORWARD, None, RayClass::Camera);
+                let t = hit.map_or(f64::NAN, |hit| hit.t);
+                assert!((t - 9.0).abs() < 1e-3, "{t} instead of 9 at {place}");
+            }
+        }
+        tracer.stats.primitive_tests
+    };
+    let near = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 40.0];
+    let place = DVec3::new(500_123.4, 5_412_345.6, 321.0);
+    let few = tests(&near);
+    let many = tests(&near.map(|p| p + place));
+    assert!(many * 10 < few * 12, "{many} tests instead of {few}");
+}

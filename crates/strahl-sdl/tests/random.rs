@@ -75,4 +75,6 @@ groups! {
     fresnel_takes_the_index_of_white_light,
     beams_end_at_their_falloff,
     dispersion_needs_an_index_of_refraction,
+    the_last_noise_generator_counts_for_all_of_the_scene,
+    the_last_number_of_waves_counts_for_all_of_the_scene,
 }

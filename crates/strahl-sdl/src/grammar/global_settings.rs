@@ -1,3 +1,4 @@
+use super::foreseen::Foreseen;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
 use crate::token::Token;
@@ -33,6 +34,8 @@ pub struct GlobalSettings {
     pub trace_level: Option<u32>,
     /// `ambient_light`
     pub ambient: Option<Color>,
+    /// What is set for all of the scene, as far as its text tells beforehand.
+    pub(crate) foreseen: Foreseen,
     /// `noise_generator`: 1, 2 or 3.
     pub noise_generator: Option<u8>,
     /// The default noises that patterns have used, with the first pattern of each.
@@ -41,6 +44,17 @@ pub struct GlobalSettings {
     pub number_of_waves: Option<u32>,
     /// `irid_wavelength`
     pub irid_wavelength: Option<Color>,
+}
+
+/// The default noise with this `noise_generator` and `#version`.
+fn noise_at(number: Option<u8>, version: f64) -> NoiseGenerator {
+    let of_version = match version < RANGE_CORRECTED_SINCE {
+        true => NoiseGenerator::Original,
+        false => NoiseGenerator::RangeCorrected,
+    };
+    number
+        .and_then(|number| NoiseGenerator::from_number(number.into()))
+        .unwrap_or(of_version)
 }
 
 /// `global_settings { ... }`; of several, each item's last value counts, except that of `assumed_gamma`.
@@ -190,7 +204,7 @@ impl Parser<'_> {
             wavelength: global
                 .irid_wavelength
                 .unwrap_or(IridSettings::default().wavelength),
-            noise: self.noise_at(self.version),
+            noise: noise_at(self.state.global.noise_generator, self.version),
         };
         let settings = &mut self.scene.settings;
         settings.irid = irid;
@@ -203,7 +217,8 @@ impl Parser<'_> {
     /// The default noise.
     pub(crate) fn default_noise(&self) -> NoiseGenerator {
         let global = &self.state.global;
-        self.noise_at(global.scene_version.unwrap_or(UNVERSIONED))
+        let number = global.foreseen.noise_generator.or(global.noise_generator);
+        noise_at(number, global.scene_version.unwrap_or(UNVERSIONED))
     }
 
     /// The default noise of a pattern; it is recorded for [`Self::noise_settled`].
@@ -225,20 +240,9 @@ impl Parser<'_> {
         noise
     }
 
-    fn noise_at(&self, version: f64) -> NoiseGenerator {
-        let number = self.state.global.noise_generator.map(u32::from);
-        let of_version = match version < RANGE_CORRECTED_SINCE {
-            true => NoiseGenerator::Original,
-            false => NoiseGenerator::RangeCorrected,
-        };
-        number
-            .and_then(NoiseGenerator::from_number)
-            .unwrap_or(of_version)
-    }
-
     /// Warns at the end of the scene if patterns have used another noise than POV-Ray, which decides only there.
     fn noise_settled(&mut self) {
-        let last = self.noise_at(self.version);
+        let last = noise_at(self.state.global.noise_generator, self.version);
         let taken = std::mem::take(&mut self.state.global.noise_taken);
         for (_, place) in taken.into_iter().filter(|(noise, _)| *noise != last) {
             self.warn_hint(

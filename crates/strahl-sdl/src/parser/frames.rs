@@ -1,7 +1,7 @@
 use super::{Failed, Floor, PResult, Parser, Place, Scopes};
 use crate::directives::{Files, Flow};
 use crate::expr::Members;
-use crate::grammar::{State, UNVERSIONED};
+use crate::grammar::{Foreseen, State, UNVERSIONED};
 use crate::include;
 use crate::options::Options;
 use crate::source::{Chunk, Host, HostError, Source, SourceFile};
@@ -52,6 +52,7 @@ impl<'h> Parser<'h> {
         let text = Arc::new(SourceFile::new(id, source));
         let file = Arc::new(Chunk::first(text, Chunk::TOKENS, &mut symbols));
         let problems = file.lexed.problems.clone();
+        let foreseen = Foreseen::of(&file.lexed.tokens);
         let read_bytes = file.source.length() as u64;
         let mut parser = Self {
             options,
@@ -95,6 +96,7 @@ impl<'h> Parser<'h> {
             fatal: false,
             file: Arc::clone(&file),
         };
+        parser.state.global.foreseen = foreseen;
         parser.frames.push(Frame {
             entry: Entry::Scene,
             from: parser.place,

@@ -228,7 +228,9 @@ impl Parser<'_> {
 
     /// The default number of wave sources: that of `number_of_waves`.
     fn wave_sources(&self) -> u32 {
-        self.state.global.number_of_waves.unwrap_or(10)
+        let global = &self.state.global;
+        let waves = global.foreseen.number_of_waves.or(global.number_of_waves);
+        waves.unwrap_or(10)
     }
 
     /// An integer within bounds.
