@@ -8,6 +8,7 @@
 mod animation;
 mod args;
 mod commands;
+mod complete;
 mod explain;
 mod fonts;
 mod heat;
