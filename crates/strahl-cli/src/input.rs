@@ -103,7 +103,7 @@ impl<'a> Input<'a> {
             Some(path) if path.as_os_str() == "-" => {
                 let format = format.ok_or_else(|| {
                     Failure::new(
-                        "a scene from the standard input needs --format NAME (see `strahl formats`)",
+                        "a scene from the standard input needs --scene-format NAME (see `strahl formats`)",
                     )
                 })?;
                 let mut bytes = Vec::new();

@@ -54,7 +54,8 @@ fn main() -> ExitCode {
         }
     };
     let matches = command.try_get_matches_from_mut(&translated.words);
-    let matches = matches.unwrap_or_else(|error| args::with_tip(error).exit());
+    let matches = matches
+        .unwrap_or_else(|error| args::explained(error, &command, &translated.words).exit());
     let cli =
         Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut command).exit());
     // The viewer ends by itself.

@@ -10,7 +10,7 @@ mod tips;
 pub(crate) use questions::*;
 pub(crate) use render::*;
 pub(crate) use scene::*;
-pub(crate) use tips::with_tip;
+pub(crate) use tips::explained;
 
 use crate::later::Later;
 use crate::memory::MemoryLimit;
