@@ -84,8 +84,8 @@ pub(crate) enum Command {
     },
     /// Print the manual page of strahl, or of a command: `strahl man render | man -l -`
     Man {
-        /// The command
-        command: Option<String>,
+        /// The command, such as render or submit slurm
+        command: Vec<String>,
     },
 }
 

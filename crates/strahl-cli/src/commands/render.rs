@@ -6,6 +6,7 @@ use crate::progress::Watch;
 use crate::report::{Failure, Reporter};
 use crate::stats::{RenderTimes, Stats};
 use crate::target::Target;
+use crate::words::counted;
 use crate::{complete, interrupt, output, terminal, tile, work};
 use std::rc::Rc;
 use std::time::Instant;
@@ -166,12 +167,14 @@ impl Job<'_> {
         };
         let kept = match kept {
             0 => String::new(),
+            1 => ", 1 was complete already".to_owned(),
             n => format!(", {n} were complete already"),
         };
         self.reporter.say(&format!(
-            "{} to {}: {all} frames{kept}, {:.2} s in all",
+            "{} to {}: {}{kept}, {:.2} s in all",
             name(animation.frames.first()),
             name(animation.frames.last()),
+            counted(all as u64, "frame"),
             self.start.elapsed().as_secs_f64(),
         ));
         Ok(())
@@ -198,6 +201,7 @@ impl Job<'_> {
             _ if self.input.is_pov() => Ok(DEFAULT_SIZE),
             _ => {
                 let scene = self.input.load(moment, &self.reporter)?;
+                // If the picture is not complete, the scene is read once more.
                 Ok(scene.settings.size.unwrap_or(DEFAULT_SIZE))
             }
         }
