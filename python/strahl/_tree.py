@@ -91,6 +91,8 @@ class Sample(Node):
     """The number of the ray, where a place has several."""
     times: int
     """How often its place counts in the mean of the pixel."""
+    share: float
+    """The share of its place in the mean of the pixel."""
     color: Triple
     """The linear colour it brings."""
     rays: list[TreeRay]

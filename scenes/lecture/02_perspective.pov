@@ -7,7 +7,7 @@
 //     strahl explain scenes/lecture/02_perspective.pov --size 320x180 --sampling center --pixel 280,120
 //     strahl render scenes/lecture/02_perspective.pov --size 320x180 --shading depth -o depth.png
 //
-// show two primary rays, from the same eye in different directions, and how far each primary ray goes: what is brighter is farther away.
+// show two primary rays, from the same eye in different directions, and how far each primary ray goes: what is brighter is farther away (the sky keeps its own colour).
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { perspective location <0, 2.2, -5.5> right x * image_width / image_height angle 52 look_at <0, 0.6, 2> }

@@ -5,7 +5,7 @@
 //
 //     strahl render scenes/lecture/10_polygon.pov --size 320x180 --shading normals -o normals.png
 //
-// shows the normals as colours, n/2 + 1/2 with x, y and z as red, green and blue: each face has one normal, and so one colour.
+// shows the normals as colours, n/2 + 1/2 with x, y and z as red, green and blue (linear values: 0.5 is 188 in a PNG; an EXR has the numbers themselves): each face has one normal, and so one colour.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 2.2, -7> right x * image_width / image_height angle 56 look_at <0, 1.0, 0> }

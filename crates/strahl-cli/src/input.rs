@@ -55,6 +55,8 @@ pub(crate) struct Input<'a> {
     writes: bool,
     /// Whether the scene was a bare mesh, which gets a ground, a camera and lights.
     staged: Cell<bool>,
+    /// Whether the scene's messages have been printed.
+    said: Cell<bool>,
     /// Whether to keep what the scene consists of.
     records: bool,
     now: Option<f64>,
@@ -103,7 +105,7 @@ impl<'a> Input<'a> {
             Some(path) if path.as_os_str() == "-" => {
                 let format = format.ok_or_else(|| {
                     Failure::new(
-                        "a scene from the standard input needs --format NAME (see `strahl formats`)",
+                        "a scene from the standard input needs --scene-format NAME (see `strahl formats`)",
                     )
                 })?;
                 let mut bytes = Vec::new();
@@ -126,6 +128,7 @@ impl<'a> Input<'a> {
             size: size.unwrap_or(DEFAULT_SIZE),
             writes: false,
             staged: Cell::new(false),
+            said: Cell::new(false),
             records: false,
             now: None,
             quality: Quality::FULL,
@@ -231,6 +234,11 @@ impl<'a> Input<'a> {
             Place::Text { format, .. } => Some(*format),
         };
         format == Some(Format::Pov)
+    }
+
+    /// Prints the scene's messages no more, because it was read before.
+    pub(crate) fn has_said(&self) {
+        self.said.set(true);
     }
 
     /// Whether the scene had neither camera nor lights, and got a ground, a camera and lights.
@@ -345,7 +353,7 @@ impl<'a> Input<'a> {
 
     /// Reads the scene and prints its diagnostics.
     pub(crate) fn load(&self, moment: Moment, reporter: &Reporter) -> Result<Scene, Failure> {
-        let mut loaded = self.read(moment, reporter.quiet);
+        let mut loaded = self.read(moment, reporter.quiet || self.said.get());
         *self.inputs.borrow_mut() = loaded.inputs.take();
         let failed = reporter.print(&loaded.diagnostics, None);
         match loaded.scene {

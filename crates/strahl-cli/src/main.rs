@@ -8,6 +8,7 @@
 mod animation;
 mod args;
 mod commands;
+mod complete;
 mod explain;
 mod fonts;
 mod heat;
@@ -25,6 +26,7 @@ mod submit;
 mod target;
 mod terminal;
 mod tile;
+mod words;
 mod work;
 
 use args::{Cli, Command};
@@ -53,7 +55,8 @@ fn main() -> ExitCode {
         }
     };
     let matches = command.try_get_matches_from_mut(&translated.words);
-    let matches = matches.unwrap_or_else(|error| args::with_tip(error).exit());
+    let matches =
+        matches.unwrap_or_else(|error| args::explained(error, &command, &translated.words).exit());
     let cli =
         Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut command).exit());
     // The viewer ends by itself.
@@ -81,7 +84,7 @@ fn main() -> ExitCode {
         Command::Check(args) => commands::check::run(args),
         Command::Formats => commands::formats::run(),
         Command::Completions { shell } => commands::completions::run(*shell),
-        Command::Man { command } => commands::man::run(command.as_deref()),
+        Command::Man { command } => commands::man::run(command),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

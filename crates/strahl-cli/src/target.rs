@@ -9,7 +9,7 @@ use crate::report::Failure;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use strahl::formats::image::{
-    ImageError, ImageFormat, Picture, WriteOptions, encode_picture, formats, write_file,
+    FormatInfo, ImageError, ImageFormat, Picture, WriteOptions, encode_picture, formats, write_file,
 };
 
 /// The destination of a picture and its format.
@@ -111,7 +111,8 @@ impl Target {
         let shown = self.shown();
         if args.layers && !self.format().info().layers {
             return Err(Failure::new(format!(
-                "--layers needs a format with layers (.exr), but the picture is {shown}"
+                "--layers needs a format with layers ({}), but the picture is {shown}",
+                endings(|info| info.layers)
             )));
         }
         if args.tile.is_some() && self.file().is_none_or(|_| !self.format().info().layers) {
@@ -122,7 +123,8 @@ impl Target {
         self.check_grayscale(args.grayscale)?;
         if args.alpha && !self.format().info().alpha {
             return Err(Failure::new(format!(
-                "--alpha needs a format with an alpha channel (.png, .exr), but the picture is {shown}"
+                "--alpha needs a format with an alpha channel ({}), but the picture is {shown}",
+                endings(|info| info.alpha)
             )));
         }
         for (option, is_given) in [
@@ -156,7 +158,9 @@ impl Target {
             }
             Self::Stream(_) | Self::File(..) => {}
         }
-        let files = named().filter(|file| !is_standard(file));
+        let picture = self.file().filter(|_| !args.no_output);
+        let files: Vec<&Path> = named().filter(|file| !is_standard(file)).collect();
+        check_distinct(&picture.into_iter().chain(files.clone()).collect::<Vec<_>>())?;
         for file in self.file().into_iter().chain(files) {
             check_folder(file)?;
         }
@@ -167,7 +171,8 @@ impl Target {
     pub(crate) fn check_grayscale(&self, is_asked: bool) -> Result<(), Failure> {
         if is_asked && !self.format().info().grayscale {
             return Err(Failure::new(format!(
-                "--grayscale needs a format with grey pictures (.png, .ppm), but the picture is {}",
+                "--grayscale needs a format with grey pictures ({}), but the picture is {}",
+                endings(|info| info.grayscale),
                 self.shown()
             )));
         }
@@ -185,17 +190,8 @@ impl Target {
 
     /// Checks that the picture does not overwrite the scene itself, which would be a typing error.
     fn spares(&self, input: &Input<'_>, args: &RenderArgs) -> Result<(), Failure> {
-        let real = |path: &Path| path.canonicalize().ok();
-        let scene = input.path().and_then(real);
-        for file in self.file().into_iter().chain(report_files(args)) {
-            if scene.is_some() && real(file) == scene {
-                return Err(Failure::new(format!(
-                    "{} is the scene itself, which must not be overwritten",
-                    file.display()
-                )));
-            }
-        }
-        Ok(())
+        let mut files = self.file().into_iter().chain(report_files(args));
+        files.try_for_each(|file| spare(input, file))
     }
 
     /// Writes a picture. Ctrl-C ends this too, and leaves no partial file.
@@ -241,6 +237,63 @@ fn scene_name(args: &RenderArgs) -> Result<String, Failure> {
     let stem = name.strip_suffix(".gz").unwrap_or(name);
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
     Ok(stem.to_owned())
+}
+
+/// Checks that a file is not the scene itself.
+pub(crate) fn spare(input: &Input<'_>, file: &Path) -> Result<(), Failure> {
+    let real = |path: &Path| path.canonicalize().ok();
+    let scene = input.path().and_then(real);
+    match scene.is_some() && real(file) == scene {
+        true => Err(Failure::new(format!(
+            "{} is the scene itself, which must not be overwritten",
+            file.display()
+        ))),
+        false => Ok(()),
+    }
+}
+
+/// Checks that files to be written are different ones: the last would replace the others.
+pub(crate) fn check_distinct(files: &[&Path]) -> Result<(), Failure> {
+    // Devices such as /dev/null take more than one.
+    let is_device = |file: &&Path| file.exists() && !file.is_file();
+    let files: Vec<&Path> = files.iter().copied().filter(|f| !is_device(f)).collect();
+    for (number, file) in files.iter().enumerate() {
+        let place = place(file);
+        if files[..number]
+            .iter()
+            .any(|other| self::place(other) == place)
+        {
+            return Err(Failure::new(format!(
+                "{} is named twice: picture, statistics and profile need a file each",
+                file.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Where a file is, or will be.
+fn place(file: &Path) -> PathBuf {
+    if let Ok(place) = file.canonicalize() {
+        return place;
+    }
+    let folder = match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let name = file.file_name().unwrap_or_default();
+    folder
+        .canonicalize()
+        .map_or_else(|_| file.to_owned(), |folder| folder.join(name))
+}
+
+/// The endings of the formats that can do something, such as `.png, .exr`.
+fn endings(able: impl Fn(&FormatInfo) -> bool) -> String {
+    let able = formats().iter().filter(|info| able(info));
+    let all: Vec<String> = able
+        .map(|info| format!(".{}", info.extensions[0]))
+        .collect();
+    all.join(", ")
 }
 
 /// Checks that a file's folder exists, which is cheaper before the render than after it.

@@ -74,9 +74,8 @@ pub fn template(job: &Job, name: &str) -> Value {
         }));
     }
     let run = |args: Vec<Value>| json!({ "actions": { "onRun": { "command": "{{Param.Strahl}}", "args": args } } });
-    json!({
+    let mut template = json!({
         "specificationVersion": "jobtemplate-2023-09",
-        "extensions": ["TASK_CHUNKING"],
         "name": name,
         "description": "A picture or film of strahl, in parts",
         "parameterDefinitions": parameters,
@@ -99,7 +98,12 @@ pub fn template(job: &Job, name: &str) -> Value {
                 ]),
             },
         ],
-    })
+    });
+    if !numbers.is_empty() {
+        // Only chunks of frames need it, and not every scheduler has it.
+        template["extensions"] = json!(["TASK_CHUNKING"]);
+    }
+    template
 }
 
 /// Numbers as a range expression: `1-10,12-20:2`.
@@ -149,6 +153,7 @@ mod tests {
             scene: String::new(),
         }];
         assert_eq!(spaces(&job), ["Tile"]);
+        assert_eq!(template(&job, "a").get("extensions"), None);
         job.frames = (1..5)
             .map(|n| JobFrame {
                 number: Some(n),
@@ -156,6 +161,7 @@ mod tests {
             })
             .collect();
         assert_eq!(spaces(&job), ["Frame", "Tile"]);
+        assert_eq!(template(&job, "a")["extensions"], json!(["TASK_CHUNKING"]));
         job.tiles.pop();
         assert_eq!(spaces(&job), ["Frame"]);
     }

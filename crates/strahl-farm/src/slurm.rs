@@ -86,11 +86,10 @@ pub fn folder_of(script: &str) -> Option<&Path> {
 
 /// The lines that both scripts begin with.
 fn head(options: &SlurmOptions, folder: &Path, log: &str) -> String {
-    let log = folder.join("log").join(log);
-    // Slurm takes the rest of the line as it is, blanks included, if it is quoted.
+    // Slurm takes the rest of the line as it is, blanks included, if it is quoted, and replaces `%j` and the like: of the log's name, not of the folder's.
+    let folder_of_logs = folder.join("log").display().to_string().replace('%', "%%");
     let mut head = format!(
-        "#!/bin/sh\n#SBATCH --job-name=strahl\n#SBATCH --output=\"{}\"\n#SBATCH --open-mode=append\n",
-        log.display()
+        "#!/bin/sh\n#SBATCH --job-name=strahl\n#SBATCH --output=\"{folder_of_logs}/{log}\"\n#SBATCH --open-mode=append\n"
     );
     let mut set = |name: &str, value: &Option<String>| {
         if let Some(value) = value {
@@ -149,6 +148,9 @@ mod tests {
         );
         assert!(script.starts_with("#!/bin/sh\n#SBATCH"));
         assert_eq!(folder_of(&script), Some(Path::new("/data/a's job")));
+        let script = render_script(&options, Path::new("strahl"), Path::new("/data/%j.job"));
+        assert!(script.contains("--output=\"/data/%%j.job/log/%A_%a.log\"\n"));
+        assert!(script.contains("submit task /data/%j.job --task"));
         let merge = merge_script(&options, Path::new("strahl"), Path::new("/job"));
         assert!(merge.contains("strahl submit merge /job\n") && !merge.contains("--time"));
     }

@@ -119,6 +119,12 @@ pub enum TileError {
     /// The file can't be read or written.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// There is no such file.
+    #[error("there is no file `{}`", path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+    },
     /// An OpenEXR picture of something else.
     #[error("`{}` is a picture, but not a tile: `strahl render --tile K/N` writes tiles", path.display())]
     NoTile {
@@ -163,6 +169,7 @@ impl TileFile {
     /// # Errors
     /// [`TileError`]: no such file, a damaged or cut off file, or another kind of picture.
     pub fn read(path: &Path) -> Result<Self, TileError> {
+        present(path)?;
         let mut file = read_exr(path)?;
         let metadata = std::mem::take(&mut file.header.metadata);
         let (info, expected) = info(path, &metadata)?;
@@ -187,12 +194,22 @@ impl TileFile {
     /// # Errors
     /// [`TileError`]: no such file, a cut off file, or another kind of picture.
     pub fn head(path: &Path) -> Result<TileHead, TileError> {
+        present(path)?;
         let header = read_exr_header(path)?;
         let (info, _) = info(path, &header.metadata)?;
         Ok(TileHead {
             region: region(&header),
             info,
         })
+    }
+}
+
+fn present(path: &Path) -> Result<(), TileError> {
+    match path.exists() {
+        true => Ok(()),
+        false => Err(TileError::Missing {
+            path: path.to_owned(),
+        }),
     }
 }
 

@@ -45,6 +45,8 @@ pub struct Sample {
     pub lens_ray: Option<u32>,
     /// How often its place counts in the mean of the pixel.
     pub times: u32,
+    /// The share of its place in the mean of the pixel.
+    pub share: f64,
     /// The linear colour it brings.
     pub color: Triple,
     /// The rays in the order of tracing; the first is the primary ray.

@@ -163,8 +163,8 @@ pub enum FilmError {
     },
     /// There is not enough memory for the film.
     #[error(
-        "a picture of {width} x {height} pixels needs {gib:.1} GiB of memory, more than there is; \
-         render it in parts with --region"
+        "a picture of {width} x {height} pixels needs {gib:.1} GiB of memory, more than there is or is allowed; \
+         make it smaller, or render it in parts with `strahl render --region`"
     )]
     OutOfMemory {
         /// Width of the region.

@@ -6,7 +6,7 @@ mod quadrants;
 mod refinement;
 mod sample;
 
-pub(crate) use division::Division;
+pub(crate) use division::{Division, shares};
 pub(crate) use quadrants::Quadrants;
 pub use refinement::Refinement;
 pub(crate) use refinement::{Compared, Slopes};

@@ -3,7 +3,7 @@ use crate::observer::{
     BranchEnd, GatherTerm, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
 };
 use crate::render::{RenderError, RenderOptions, mean_of_corners, refined_quadrants};
-use crate::sampling::{Division, Quadrants, Refinement, Sample, Sampling};
+use crate::sampling::{Division, Quadrants, Refinement, Sample, Sampling, shares};
 use crate::scene::RenderScene;
 use crate::trace::TreeTracer;
 use strahl_scene::Camera;
@@ -59,6 +59,9 @@ pub struct PixelSample {
     /// How often its place counts in the mean. The centre of a pixel that was refined towards some neighbours only stands for the places that were left out,
     /// too.
     pub times: u32,
+    /// The share of its place in the mean of the pixel; those of all places add up to 1. With [`Sampling::Recursive`] it is a quarter of the area of every
+    /// undivided square at whose corner the place lies. (A place with several rays shows their mean.)
+    pub share: f64,
     /// The radiance that it brings, in linear light. (The tree's total, of which the pixel's mean is made, is a colour of the scene's working space.)
     pub color: Color,
     /// Its tree.
@@ -72,8 +75,7 @@ pub struct PixelTree {
     pub samples: Vec<PixelSample>,
     /// How many places of the picture they belong to; the camera may see nothing through some.
     pub places: u32,
-    /// The pixel's linear colour before rounding: the mean over the places (each counted [`PixelSample::times`]), or over the squares it was divided into, of
-    /// colours of the scene's working space.
+    /// The pixel's linear colour before rounding: the mean over the places (each with its [`PixelSample::share`]) of colours of the scene's working space.
     pub color: Color,
     /// The colour as it is in the film.
     pub film: [f32; 3],
@@ -162,7 +164,11 @@ pub(crate) fn explain_from(
         places: 0,
     };
     let color = match &options.sampling {
-        Sampling::Corners => mean_of_corners(recorder.corners()).color,
+        Sampling::Corners => {
+            let corners = recorder.corners();
+            recorder.share(|_| 0.25);
+            mean_of_corners(corners).color
+        }
         Sampling::Recursive(refinement) => recorder.divided(refinement),
         _ => recorder.passes(refined_quadrants(scene, &rays, options, x, y)?),
     };
@@ -208,12 +214,20 @@ impl Recorder<'_> {
                 pass,
                 ray: (!rays.is_sharp()).then_some(number),
                 times: 1,
+                share: 0.0,
                 color: linear,
                 tree,
             });
             number += 1;
             color
         })
+    }
+
+    /// Gives each sample the share of its place.
+    fn share(&mut self, of: impl Fn(&PixelSample) -> f64) {
+        for sample in &mut self.samples {
+            sample.share = of(sample);
+        }
     }
 
     /// What is seen through the corners of the pixel.
@@ -227,8 +241,15 @@ impl Recorder<'_> {
         let corners = self.corners();
         let mut division = Division::new(refinement, self.options.trace.space());
         division.add((0, 0), corners);
-        let mut inner = |at: &(f64, f64)| Sample::from(self.place(1, *at));
+        let mut places = vec![];
+        let mut inner = |at: &(f64, f64)| {
+            places.push(*at);
+            Sample::from(self.place(1, *at))
+        };
         let means = division.means(|places| Some(places.iter().map(&mut inner).collect()));
+        let shares = shares(&places, refinement);
+        let (x, y) = (f64::from(self.pixel.0), f64::from(self.pixel.1));
+        self.share(|sample| shares(sample.place.0 - x, sample.place.1 - y));
         means.map_or(Color::BLACK, |means| means[0].color)
     }
 
@@ -261,6 +282,7 @@ impl Recorder<'_> {
             sum = more + sum * f64::from(1 + center_stands_for);
             all += places(1).len() as u32;
         }
+        self.share(|sample| f64::from(sample.times) / f64::from(all));
         if all == 1 { sum } else { sum / f64::from(all) }
     }
 }

@@ -57,7 +57,7 @@ export function showPixel(pixel, actions = {}, first = 0) {
     pixel.samples.forEach((sample, index) => {
       const button = el("button", {
         type: "button", class: "sample", "aria-pressed": String(index === first),
-        title: `${word("sample")} ${sample.sample}: ${triple(sample.color)}`,
+        title: `${word("sample")} ${sample.sample}: ${triple(sample.color)}, ${word("counts")} ${number(sample.share)}`,
         onclick: () => {
           for (const other of list.children) other.setAttribute("aria-pressed", "false");
           button.setAttribute("aria-pressed", "true");

@@ -85,7 +85,7 @@ impl Parameters for OctreeParameters {
         Parameter {
             name: "havran",
             values: "",
-            about: "build and count as for V. Havran's published figures (centre, leaf=1, exit-face): by boxes, without mailboxes",
+            about: "build and count as for V. Havran's published figures (centre, leaf=1, exit-face): by boxes, without mailboxes; give a depth of 7 or less with it, because each level can take 8 times the memory",
         },
     ];
 

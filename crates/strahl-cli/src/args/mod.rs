@@ -10,7 +10,7 @@ mod tips;
 pub(crate) use questions::*;
 pub(crate) use render::*;
 pub(crate) use scene::*;
-pub(crate) use tips::with_tip;
+pub(crate) use tips::explained;
 
 use crate::later::Later;
 use crate::memory::MemoryLimit;
@@ -84,8 +84,8 @@ pub(crate) enum Command {
     },
     /// Print the manual page of strahl, or of a command: `strahl man render | man -l -`
     Man {
-        /// The command
-        command: Option<String>,
+        /// The command, such as render or submit slurm
+        command: Vec<String>,
     },
 }
 

@@ -14,7 +14,7 @@ pub(crate) struct CheckArgs {
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
     /// Format of the scenes, if the file names don't show it (see `strahl formats`)
-    #[arg(long, alias = "scene-format", value_name = "NAME")]
+    #[arg(long, visible_alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
     /// Print JSON: one object with all diagnostics for each scene
     #[arg(long)]
@@ -66,7 +66,7 @@ pub(crate) struct ViewArgs {
     /// Scene file [default: a choice of the scenes that are built in]
     pub(crate) scene: Option<PathBuf>,
     /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
-    #[arg(long, alias = "scene-format", value_name = "NAME")]
+    #[arg(long, visible_alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
     /// Port on 127.0.0.1; 0 takes a free one
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -14,7 +14,7 @@ pub(crate) struct RenderArgs {
     /// Scene file, or `-` for the standard input [default: a built-in demo scene]
     pub(crate) scene: Option<PathBuf>,
     /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
-    #[arg(long, alias = "scene-format", value_name = "NAME")]
+    #[arg(long, visible_alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
     /// Picture file (see `strahl formats`), a folder for it, or `-` for the standard output [default: the scene's name with .png, in
     /// the current folder]

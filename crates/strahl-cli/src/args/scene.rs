@@ -15,7 +15,7 @@ pub(crate) struct SceneArgs {
     /// Scene file, or `-` for the standard input
     pub(crate) scene: PathBuf,
     /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
-    #[arg(long, alias = "scene-format", value_name = "NAME")]
+    #[arg(long, visible_alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
     #[command(flatten)]
     pub(crate) pov: PovArgs,

@@ -2,7 +2,8 @@
 
 use super::render::RenderArgs;
 use crate::later::Later;
-use clap::{Args, Subcommand};
+use clap::{ArgMatches, Args, Command, Error, FromArgMatches, Subcommand};
+use std::ops::Deref;
 use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
@@ -53,6 +54,61 @@ pub(crate) struct PartArgs {
     pub(crate) movie_rate: f64,
 }
 
+/// The options of `render` for a job.
+#[derive(Debug)]
+pub(crate) struct JobRenderArgs(RenderArgs);
+
+/// Options of `render` that have no meaning for a job, which refuses them; its help does not show them.
+const NOT_FOR_JOBS: [&str; 8] = [
+    "stats",
+    "profile",
+    "no_output",
+    "tile",
+    "region",
+    "full_size",
+    "resume",
+    "allow_write",
+];
+
+impl Args for JobRenderArgs {
+    fn augment_args(command: Command) -> Command {
+        let mut command = RenderArgs::augment_args(command);
+        for id in NOT_FOR_JOBS {
+            command = command.mut_arg(id, |argument| argument.hide(true));
+        }
+        command
+            .mut_arg("scene", |scene| scene.help("Scene file"))
+            .mut_arg("output", |output| {
+                output.help("Picture file (see `strahl formats`), or a folder for it [default: the scene's name with .png, in the current folder]")
+            })
+            .mut_arg("threads", |threads| {
+                threads.help("Number of threads that look here where the scene is costly; 0 means one per processor.")
+            })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for JobRenderArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        RenderArgs::from_arg_matches(matches).map(Self)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        self.0.update_from_arg_matches(matches)
+    }
+}
+
+impl Deref for JobRenderArgs {
+    type Target = RenderArgs;
+
+    fn deref(&self) -> &RenderArgs {
+        &self.0
+    }
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct SlurmArgs {
     #[command(flatten)]
@@ -84,7 +140,7 @@ pub(crate) struct SlurmArgs {
     #[arg(long, value_name = "FILE", help_heading = "Slurm")]
     pub(crate) program: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) render: RenderArgs,
+    pub(crate) render: JobRenderArgs,
 }
 
 #[derive(Debug, Args)]
@@ -92,7 +148,7 @@ pub(crate) struct OpenjdArgs {
     #[command(flatten)]
     pub(crate) parts: PartArgs,
     #[command(flatten)]
-    pub(crate) render: RenderArgs,
+    pub(crate) render: JobRenderArgs,
 }
 
 #[derive(Debug, Args)]

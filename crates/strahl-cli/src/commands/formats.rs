@@ -9,12 +9,12 @@ pub(crate) fn run() -> Result<(), Failure> {
     let files = strahl::formats::scene::formats().iter();
     let files = files.map(|f| (f.name, f.extensions, f.description));
     for (name, endings, description) in [Format::POV].into_iter().chain(files) {
-        say!("  {name:8} {:16} {description}", extensions(endings));
+        say!("  {name:12} {:16} {description}", extensions(endings));
     }
     say!("Pictures:");
     for format in strahl::formats::image::formats() {
         say!(
-            "  {:8} {:16} {}",
+            "  {:12} {:16} {}",
             format.name,
             extensions(format.extensions),
             format.description

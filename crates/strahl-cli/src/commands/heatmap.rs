@@ -3,7 +3,7 @@ use crate::heat::{LEGEND_ROWS, color, legend};
 use crate::input::{Input, render_options, threads};
 use crate::interrupt;
 use crate::report::{Failure, Reporter};
-use crate::target::Target;
+use crate::target::{Target, check_folder, spare};
 use std::time::Instant;
 use strahl::formats::image::{ImageFormat, Layer, LayerData, Picture, WriteOptions};
 use strahl::tracing::{PixelCost, Progress, RenderError, RenderScene, Sampling};
@@ -13,6 +13,8 @@ pub(crate) fn run(args: &HeatmapArgs) -> Result<(), Failure> {
     let format = ImageFormat::from_path(&args.output).map_err(Failure::new)?;
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let input = input.at_quality(args.picture.quality);
+    spare(&input, &args.output)?;
+    check_folder(&args.output)?;
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &reporter)?;
     let mut options = render_options(&scene, &args.picture);
     // One ray per pixel shows its cost; antialiasing would blur it.

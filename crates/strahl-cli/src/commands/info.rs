@@ -3,9 +3,9 @@ use crate::input::Input;
 use crate::memory;
 use crate::output::say;
 use crate::report::{Failure, Reporter};
+use crate::words::{counted, triple};
 use std::collections::BTreeMap;
 use strahl::accel::AcceleratorKind;
-use strahl::math::DVec3;
 use strahl::shade::LightKind;
 use strahl::tracing::{Prepared, RenderScene};
 
@@ -26,7 +26,7 @@ pub(crate) fn run(args: &SceneArgs) -> Result<(), Failure> {
         !description.lights.is_empty() && !staged,
     );
     let scene = prepared.build(AcceleratorKind::default());
-    say!("scene       {}", args.scene.display());
+    say!("scene       {}", input.name());
     objects(&scene);
     if staged {
         say!("studio      a ground, a camera and three lights were added: the file has none");
@@ -35,12 +35,12 @@ pub(crate) fn run(args: &SceneArgs) -> Result<(), Failure> {
     let s = scene.stats();
     say!("materials   {}", s.materials);
     say!(
-        "memory      geometry {}, {} {} ({} nodes, {} references)",
+        "memory      geometry {}, {} {} ({}, {})",
         memory::size(s.geometry_bytes),
         scene.accelerator_name(),
         memory::size(s.accelerator_bytes),
-        s.nodes,
-        s.references,
+        counted(s.nodes as u64, "node"),
+        counted(s.references as u64, "reference"),
     );
     Ok(())
 }
@@ -75,9 +75,9 @@ fn objects(scene: &RenderScene) {
     } else {
         say!(
             "bounds      {} to {}, size {}",
-            point(b.min),
-            point(b.max),
-            point(b.size())
+            triple(b.min),
+            triple(b.max),
+            triple(b.size())
         );
     }
 }
@@ -92,23 +92,23 @@ fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
     };
     say!(
         "camera      {kind}, eye {}, direction {}{chosen}",
-        point(c.eye),
-        point(c.direction)
+        triple(c.eye),
+        triple(c.direction)
     );
     if let Some((w, h)) = scene.settings().size {
         say!("size        {w}x{h}");
     }
     for light in scene.lights() {
         let place = match light.light.kind {
-            LightKind::Point { position } => format!("point light at {}", point(position)),
+            LightKind::Point { position } => format!("point light at {}", triple(position)),
             LightKind::Directional { direction } => {
-                format!("directional light along {}", point(direction))
+                format!("directional light along {}", triple(direction))
             }
-            LightKind::Spot { position, .. } => format!("spot light at {}", point(position)),
+            LightKind::Spot { position, .. } => format!("spot light at {}", triple(position)),
             LightKind::Parallel { direction, .. } => {
-                format!("parallel light along {}", point(direction))
+                format!("parallel light along {}", triple(direction))
             }
-            LightKind::Beam { position, .. } => format!("beam of light from {}", point(position)),
+            LightKind::Beam { position, .. } => format!("beam of light from {}", triple(position)),
             _ => "light".to_owned(),
         };
         let c = light.light.color;
@@ -120,8 +120,4 @@ fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
             c.b
         );
     }
-}
-
-fn point(p: DVec3) -> String {
-    format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
 }

@@ -1,7 +1,8 @@
 use crate::args::MergeArgs;
+use crate::output::{self, is_standard};
 use crate::report::{Failure, Reporter};
-use crate::target::{Target, check_folder};
-use crate::{output, work};
+use crate::target::{Target, check_distinct, check_folder};
+use crate::work;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,17 +30,27 @@ pub(crate) fn run(args: &MergeArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let reporter = Reporter::new(args.quiet);
     let target = Target::named(&args.output, args.picture_format)?;
-    if let Some(file) = args.stats.as_deref().filter(|s| s.as_os_str() != "-") {
+    let stats = args.stats.as_deref();
+    if stats.is_some_and(is_standard) && target.file().is_none() {
+        return Err(Failure::new(
+            "picture and statistics can't both go to the standard output: name a file for one of them",
+        ));
+    }
+    let stats = stats.filter(|file| !is_standard(file));
+    if let Some(file) = stats {
         check_folder(file)?;
     }
+    check_distinct(&target.file().into_iter().chain(stats).collect::<Vec<_>>())?;
     let real = |path: &Path| path.canonicalize().ok();
     target.check_grayscale(args.grayscale)?;
-    let own = target.file().and_then(real);
-    if own.is_some() && args.tiles.iter().any(|tile| real(tile) == own) {
-        return Err(Failure::new(format!(
-            "{} is one of the tiles, which must not be overwritten",
-            target.shown()
-        )));
+    for file in target.file().into_iter().chain(stats) {
+        let own = real(file);
+        if own.is_some() && args.tiles.iter().any(|tile| real(tile) == own) {
+            return Err(Failure::new(format!(
+                "{} is one of the tiles, which must not be overwritten",
+                file.display()
+            )));
+        }
     }
     work::doing("reading tiles");
     let merged = strahl_farm::merge(&args.tiles).map_err(Failure::new)?;

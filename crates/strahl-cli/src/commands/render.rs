@@ -6,8 +6,8 @@ use crate::progress::Watch;
 use crate::report::{Failure, Reporter};
 use crate::stats::{RenderTimes, Stats};
 use crate::target::Target;
-use crate::{interrupt, output, terminal, tile, work};
-use std::path::Path;
+use crate::words::counted;
+use crate::{complete, interrupt, output, terminal, tile, work};
 use std::rc::Rc;
 use std::time::Instant;
 use strahl::formats::image::{Picture, Window, WriteOptions};
@@ -78,7 +78,7 @@ struct Traced {
 impl Job<'_> {
     fn still(&self) -> Result<(), Failure> {
         let target = &self.target;
-        if self.is_complete(target) {
+        if self.is_complete(target, self.input.still())? {
             self.reporter
                 .say(&format!("{}: complete already", target.shown()));
             return Ok(());
@@ -146,7 +146,7 @@ impl Job<'_> {
                 Some(_) => self.target.clone(),
                 None => self.target.of_frame(animation, *frame),
             };
-            if self.is_complete(&target) {
+            if self.is_complete(&target, animation.moment(*frame))? {
                 kept += 1;
                 continue;
             }
@@ -167,21 +167,44 @@ impl Job<'_> {
         };
         let kept = match kept {
             0 => String::new(),
+            1 => ", 1 was complete already".to_owned(),
             n => format!(", {n} were complete already"),
         };
         self.reporter.say(&format!(
-            "{} to {}: {all} frames{kept}, {:.2} s in all",
+            "{} to {}: {}{kept}, {:.2} s in all",
             name(animation.frames.first()),
             name(animation.frames.last()),
+            counted(all as u64, "frame"),
             self.start.elapsed().as_secs_f64(),
         ));
         Ok(())
     }
 
     /// Whether the picture exists and need not be rendered again.
-    fn is_complete(&self, target: &Target) -> bool {
-        let file = target.file();
-        self.args.resume && file.is_some_and(|f| complete(f, self.args.picture.size))
+    fn is_complete(&self, target: &Target, moment: Moment) -> Result<bool, Failure> {
+        match target.file() {
+            Some(file) if self.args.resume && file.is_file() => {
+                let size = self.size_of_file(moment)?;
+                Ok(complete::is_complete(file, target.format(), size))
+            }
+            _ => Ok(false),
+        }
+    }
+
+    /// The size of the picture that will be written.
+    fn size_of_file(&self, moment: Moment) -> Result<(u32, u32), Failure> {
+        let args = self.args;
+        match (args.region, args.picture.size) {
+            (Some(region), _) if !args.full_size => Ok((region.width, region.height)),
+            (_, Some(size)) => Ok(size),
+            // No scene in POV-Ray's language has a size of its own.
+            _ if self.input.is_pov() => Ok(DEFAULT_SIZE),
+            _ => {
+                let scene = self.input.load(moment, &self.reporter)?;
+                // If the picture is not complete, the scene is read once more.
+                Ok(scene.settings.size.unwrap_or(DEFAULT_SIZE))
+            }
+        }
     }
 
     /// Loads, compiles and renders.
@@ -342,22 +365,4 @@ fn enlarged<T: Copy>(film: &Film, values: &[T], outside: T) -> Vec<T> {
         }
     }
     whole
-}
-
-/// Whether a file holds a complete picture: strahl renames complete pictures into place, other programs may not.
-fn complete(file: &Path, size: Option<(u32, u32)>) -> bool {
-    const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
-    let Ok(bytes) = std::fs::read(file) else {
-        return false;
-    };
-    if !bytes.starts_with(PNG) {
-        return !bytes.is_empty();
-    }
-    let number = |at: usize| {
-        let bytes = bytes.get(at..at + 4)?;
-        Some(u32::from_be_bytes(bytes.try_into().ok()?))
-    };
-    let is_size = |(w, h)| number(16) == Some(w) && number(20) == Some(h);
-    let end = bytes.len().saturating_sub(8);
-    bytes[end..].starts_with(b"IEND") && is_size(size.unwrap_or(DEFAULT_SIZE))
 }

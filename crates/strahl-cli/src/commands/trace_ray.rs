@@ -2,6 +2,7 @@ use crate::args::TraceRayArgs;
 use crate::input::{DEFAULT_SIZE, Input};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
+use crate::words::{counted, fixed, triple};
 use serde_json::json;
 use strahl::accel::{Exit, Place, Step};
 use strahl::math::{Aabb, DVec3};
@@ -41,8 +42,8 @@ pub(crate) fn run(args: &TraceRayArgs) -> Result<(), Failure> {
     say!("pixel {x},{y} of {width}x{height}, accelerator {kind}");
     say!(
         "ray   from {} along {}",
-        show(ray.origin),
-        show(ray.direction)
+        triple(ray.origin),
+        triple(ray.direction)
     );
     print_events(&scene, &way);
     match way.hit {
@@ -50,9 +51,9 @@ pub(crate) fn run(args: &TraceRayArgs) -> Result<(), Failure> {
         None => say!("hit   none"),
     }
     say!(
-        "cost  {} steps, {} tests",
-        way.stats.node_visits,
-        way.stats.primitive_tests
+        "cost  {}, {}",
+        counted(way.stats.node_visits, "step"),
+        counted(way.stats.primitive_tests, "test")
     );
     Ok(())
 }
@@ -108,16 +109,16 @@ fn describe(step: &Step) -> String {
     let place = match step.place {
         Place::Node(b) => format!("node {}", extent(&b)),
         Place::Leaf(b) => format!("leaf {}", extent(&b)),
-        Place::Sphere(c, r) => format!("sphere around {} radius {r:.6}", show(c)),
-        Place::LeafSphere(c, r) => format!("leaf sphere around {} radius {r:.6}", show(c)),
+        Place::Sphere(c, r) => format!("sphere around {} radius {r:.6}", triple(c)),
+        Place::LeafSphere(c, r) => format!("leaf sphere around {} radius {r:.6}", triple(c)),
         Place::Cell([x, y, z], b) => format!("cell {x},{y},{z} {}", extent(&b)),
         Place::Empty(b) => format!("empty block {}", extent(&b)),
         _ => "place".to_owned(),
     };
     let range = if step.far.is_finite() {
-        format!("t {:.6} to {:.6}", step.near, step.far)
+        format!("t {} to {}", fixed(step.near), fixed(step.far))
     } else {
-        format!("t from {:.6}", step.near)
+        format!("t from {}", fixed(step.near))
     };
     let exit = step.exit.map_or(String::new(), |exit| {
         let region = exit
@@ -143,10 +144,6 @@ fn point(p: DVec3) -> [f64; 3] {
     p.to_array()
 }
 
-fn show(p: DVec3) -> String {
-    format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
-}
-
 fn extent(b: &Aabb) -> String {
-    format!("{} to {}", show(b.min), show(b.max))
+    format!("{} to {}", triple(b.min), triple(b.max))
 }

@@ -1,6 +1,6 @@
 use crate::args::ViewArgs;
 use crate::input::{Input, Moment, threads};
-use crate::output::say;
+use crate::output::{is_standard, say};
 use crate::report::{Failure, Reporter};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -16,7 +16,13 @@ pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
         && !scene.is_file()
     {
         let shown = scene.display();
-        return Err(Failure::new(format!("there is no scene file {shown}")));
+        return Err(Failure::new(match scene {
+            _ if is_standard(scene) => {
+                "the viewer reads a scene again when it changes, so it needs a file, not the standard input".to_owned()
+            }
+            _ if scene.is_dir() => format!("{shown} is a folder, not a scene file"),
+            _ => format!("there is no scene file {shown}"),
+        }));
     }
     let session = match threads(args.threads, &reporter) {
         0 => Session::new(Threads::All),

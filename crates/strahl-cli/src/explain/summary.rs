@@ -3,9 +3,9 @@
 use super::names::without_folders;
 use super::page::Page;
 use super::tally::{Counts, Tally, plural};
-use super::{Digits, Pixel};
+use super::{Digits, Pixel, Shown};
 use strahl::shade::{Color, srgb};
-use strahl::tracing::{PixelSample, RayNode, RayTree, RenderScene};
+use strahl::tracing::{PixelSample, RayNode, RayTree, RenderScene, Sampling};
 
 /// The largest number of samples listed.
 const MOST_SAMPLES: usize = 64;
@@ -31,11 +31,23 @@ pub(super) fn write_pixel(page: &mut Page, pixel: &Pixel<'_>, digits: Digits) {
         .map(|s| Counts::of(&s.tree))
         .fold(Counts::default(), Counts::plus);
     let places = tree.places;
+    let (number, rays) = match tree.samples.first().and_then(|sample| sample.ray) {
+        None => (places, String::new()),
+        Some(_) => {
+            let rays = u32::try_from(tree.samples.len()).unwrap_or(u32::MAX);
+            let words = format!(
+                ", {rays} {} through the lens for {places} {}",
+                plural(rays, "ray", "rays"),
+                plural(places, "place", "places")
+            );
+            (rays, words)
+        }
+    };
     page.line(
         0,
         &format!(
-            "{places} {} ({}): {}",
-            plural(places, "sample", "samples"),
+            "{number} {} ({}{rays}): {}",
+            plural(number, "sample", "samples"),
             pixel.sampling,
             counts.words()
         ),
@@ -49,21 +61,36 @@ impl Pixel<'_> {
     }
 }
 
-/// How often a sample counts in the mean of the pixel, if it is more than once.
-pub(super) fn counted(sample: &PixelSample) -> String {
-    match sample.times {
-        1 => String::new(),
-        times => format!(", counts {times} times"),
+/// How much a sample counts in the mean of the pixel, if not all count alike.
+pub(super) fn counted(sample: &PixelSample, pixel: &Pixel<'_>) -> String {
+    const CORNERS: u32 = 4;
+    match (pixel.sampling, sample.times) {
+        (Sampling::Recursive(_), _) if pixel.tree.places > CORNERS => {
+            format!(", counts {}", fraction(sample.share))
+        }
+        (_, 1) => String::new(),
+        (_, times) => format!(", counts {times} times"),
     }
+}
+
+/// A number as a fraction with a power of two below the line, which shares of squares are.
+fn fraction(share: f64) -> String {
+    let (mut above, mut below) = (share, 1.0);
+    while above.fract() != 0.0 && below < 2f64.powi(60) {
+        above *= 2.0;
+        below *= 2.0;
+    }
+    format!("{above}/{below}")
 }
 
 /// Writes a line for each sample.
 pub(super) fn write_samples(
     page: &mut Page,
     scene: &RenderScene,
-    samples: &[PixelSample],
-    digits: Digits,
+    pixel: &Pixel<'_>,
+    shown: &Shown,
 ) {
+    let (samples, digits) = (&pixel.tree.samples, shown.digits);
     page.gap();
     page.row(&format!(
         "{:>6}  {:<18}  {:>4}  {:<32}  first hit",
@@ -79,17 +106,28 @@ pub(super) fn write_samples(
             Counts::of(&sample.tree).rays(),
             digits.color(sample.color),
             first.map_or_else(String::new, |node| seen(scene, node)),
-            counted(sample)
+            counted(sample, pixel)
         );
         page.row(&line);
     }
     if samples.len() > MOST_SAMPLES {
         page.line(0, &format!("   and {} more", samples.len() - MOST_SAMPLES));
     }
+    if shown.sample.is_some() {
+        // The trees follow.
+        return;
+    }
     page.gap();
+    let one = match pixel.sampling {
+        // There are several because of the camera.
+        Sampling::Center => "",
+        _ => ", `--sampling center` looks at one place only",
+    };
     page.line(
         0,
-        "`--sample N` shows the ray tree of one of them, `--sample all` those of all, `--sampling center` asks for a single ray.",
+        &format!(
+            "`--sample N` shows the ray tree of one of them, `--sample all` those of all{one}."
+        ),
     );
 }
 

@@ -28,7 +28,7 @@ pub(crate) fn text(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> Str
         None => vec![],
     };
     if samples.len() != 1 && chosen.len() != 1 {
-        write_samples(&mut page, scene, samples, digits);
+        write_samples(&mut page, scene, pixel, shown);
     }
     for number in chosen {
         let Some(sample) = samples.get(number) else {
@@ -36,7 +36,7 @@ pub(crate) fn text(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> Str
         };
         page.gap();
         if samples.len() != 1 {
-            page.line(0, &heading(number, sample, digits));
+            page.line(0, &heading(number, sample, pixel, digits));
             page.gap();
         }
         write_sample(&mut page, scene, sample, shown);
@@ -67,7 +67,7 @@ fn left_out(quality: Quality) -> Option<String> {
     (!left.is_empty()).then(|| format!("quality {quality} leaves out: {}", left.join(", ")))
 }
 
-fn heading(number: usize, sample: &PixelSample, digits: Digits) -> String {
+fn heading(number: usize, sample: &PixelSample, pixel: &Pixel<'_>, digits: Digits) -> String {
     let (x, y) = sample.place;
     let ray = sample
         .ray
@@ -77,7 +77,7 @@ fn heading(number: usize, sample: &PixelSample, digits: Digits) -> String {
         number + 1,
         digits.number(x),
         digits.number(y),
-        counted(sample)
+        counted(sample, pixel)
     )
 }
 

@@ -36,17 +36,11 @@ const READING: f64 = 0.05;
 /// The most tasks of a job: Slurm's default limit of an array is 1001.
 const MOST_TASKS: usize = 1000;
 
-/// Options of `render` that tasks set themselves, or that have no meaning for a job.
-const NOT_FOR_TASKS: [&str; 15] = [
+/// Options of `render` that tasks set themselves.
+const NOT_FOR_TASKS: [&str; 9] = [
     "scene",
     "output",
-    "stats",
     "quiet",
-    "resume",
-    "no_output",
-    "tile",
-    "region",
-    "full_size",
     "bundle",
     "expect",
     "only_frame",
@@ -149,6 +143,7 @@ pub(super) fn create(
         });
         inputs.push(read);
     }
+    input.has_said();
     tell(&inputs, parts, &reporter);
     job.now = inputs.iter().any(|i| i.record.time).then_some(now);
     job.digits = animation.as_ref().map_or(1, Animation::digits);
@@ -242,6 +237,7 @@ fn movie(parts: &PartArgs, job: &Job) -> Result<Option<Movie>, Failure> {
 fn refuse(args: &RenderArgs) -> Result<(), Failure> {
     let options = [
         ("--stats", args.stats.is_some()),
+        ("--profile", args.profile.is_some()),
         ("--no-output", args.no_output),
         ("--tile", args.tile.is_some()),
         ("--region", args.region.is_some()),
@@ -390,9 +386,12 @@ fn divide(
     let tiles = split(&map, count).map_err(Failure::new)?;
     let each = work / f64::from(count);
     reporter.say(&format!(
-        "about {} of processor time for each of {count} tile{}; every task also reads and builds the scene, which took {} here",
+        "about {} of processor time for {}; every task also reads and builds the scene, which took {} here",
         duration(each),
-        if count == 1 { "" } else { "s" },
+        match count {
+            1 => "its tile".to_owned(),
+            _ => format!("each of {count} tiles"),
+        },
         duration(reading)
     ));
     Ok(Division { tiles, size })

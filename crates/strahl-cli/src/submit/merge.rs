@@ -5,7 +5,7 @@ use crate::args::submit::MergeJobArgs;
 use crate::args::{Cli, Command as Parsed};
 use crate::output::say;
 use crate::report::Failure;
-use crate::target::Target;
+use crate::target::{Target, check_folder};
 use crate::terminal;
 use clap::Parser;
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,7 @@ pub(super) fn merge(args: &MergeJobArgs) -> Result<(), Failure> {
             movie.file = moved(&movie.file);
         }
     }
+    check_folder(&job.output)?;
     let mut outcome = Outcome::default();
     for frame in 0..job.frames.len() {
         if args.openjd {
@@ -91,8 +92,13 @@ pub(super) fn merge(args: &MergeJobArgs) -> Result<(), Failure> {
             folder.join(OUTCOME).display()
         ),
     };
+    let are = match job.frames.len() {
+        1 => "picture is",
+        _ if made == 1 => "pictures is",
+        _ => "pictures are",
+    };
     let text = format!(
-        "{more}{made} of {} pictures are complete; `strahl submit resume {}` renders what is missing",
+        "{more}{made} of {} {are} complete; `strahl submit resume {}` renders what is missing",
         job.frames.len(),
         word(&folder)
     );

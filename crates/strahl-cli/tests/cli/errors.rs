@@ -1,6 +1,105 @@
 //! Errors of the command line and of scenes.
 
-use crate::{fails, folder_with_scene};
+use crate::{fails, folder_with_scene, stderr, strahl};
+
+#[test]
+fn wrong_numbers_are_told_with_their_option() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    let none = "not negative";
+    for (words, parts) in [
+        (
+            "explain scene.nff --pixel -1,3",
+            ["--pixel <X,Y>", "-1,3", "negative"],
+        ),
+        (
+            "render scene.nff --size -1x10",
+            ["--size <WxH>", "-1x10", "negative"],
+        ),
+        (
+            "render scene.nff --threads -1",
+            ["--threads <N>", "'-1'", "negative"],
+        ),
+        (
+            "render scene.nff --depth -1",
+            ["--max-depth <N>", "'-1'", "negative"],
+        ),
+        (
+            "render scene.nff --subset-start-frame -.5",
+            ["--subset-start-frame", "-.5", "negative"],
+        ),
+        (
+            "submit task a.job --task -1",
+            ["--task <N>", "'-1'", "negative"],
+        ),
+        (
+            "heatmap scene.nff -o a.png --scale -1",
+            ["--scale <MAX>", "'-1'", "negative"],
+        ),
+        (
+            "render scene.nff --threads x",
+            ["--threads <N>", "'x'", none],
+        ),
+        (
+            "render scene.nff --threads=-2",
+            ["--threads <N>", "'-2'", none],
+        ),
+        (
+            "render scene.nff --max-depth x",
+            ["--max-depth <N>", "'x'", none],
+        ),
+        (
+            "render scene.nff --clock x",
+            ["--clock <T>", "'x'", "such as 0.5"],
+        ),
+        (
+            "render scene.nff --seed 99999999999999999999",
+            ["--seed <N>", "9999", "too large"],
+        ),
+        ("submit task a.job -q", ["-q", "unexpected", "--help"]),
+        ("render scene.nff -1", ["-1", "unexpected", "--help"]),
+        (
+            "render scene.nff --alpha -1",
+            ["-1", "unexpected", "--help"],
+        ),
+    ] {
+        let words: Vec<&str> = words.split_whitespace().collect();
+        fails(f, &words, 2, &parts);
+        let said = stderr(&strahl(f, &words));
+        for part in ["'-- ", "digit found", "float literal", "target type"] {
+            assert!(!said.contains(part), "{words:?}: {said}");
+        }
+    }
+}
+
+#[test]
+fn advice_names_options_that_the_command_has() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    std::fs::write(f.join("scene.dat"), "nothing that is known").expect("writable");
+    for command in ["explain", "info", "render"] {
+        let more = match command {
+            "explain" => &["--pixel", "3,3"][..],
+            "render" => &["-o", "a.png"],
+            _ => &[],
+        };
+        for scene in ["-", "scene.dat"] {
+            let words = [&[command, scene], more].concat();
+            fails(f, &words, 1, &["--scene-format"]);
+        }
+        // Empty, as the standard input of this test is.
+        let words = [&[command, "-", "--scene-format", "nff"], more].concat();
+        let said = stderr(&strahl(f, &words));
+        assert!(!said.contains("unexpected argument"), "{said}");
+    }
+}
+
+#[test]
+fn formats_with_an_alpha_channel_are_named() {
+    let folder = folder_with_scene();
+    let words = ["render", "scene.nff", "--alpha", "-o", "a.ppm"];
+    fails(folder.path(), &words, 1, &["(.png, .exr, .tga)"]);
+}
 
 #[test]
 fn bad_input_gives_one_clear_error() {
@@ -73,7 +172,7 @@ fn bad_input_gives_one_clear_error() {
         2,
         &["list, spheres, bvh2, bvh, grid, grids, octree"],
     );
-    fails(f, &["render", "-", "-o", "x.png"], 1, &["--format"]);
+    fails(f, &["render", "-", "-o", "x.png"], 1, &["--scene-format"]);
     fails(
         f,
         &["explain", "scene.nff", "--pixel", "48,0"],

@@ -246,6 +246,74 @@ fn a_pixel_of_many_samples_is_summed_up() {
     assert!(stderr(&wrong).contains("no sample 17") && stderr(&wrong).contains("has 16"));
 }
 
+/// A pixel that is divided where its corners differ is not the plain mean of its samples.
+#[test]
+fn samples_of_divided_pixels_have_their_share() {
+    let folder = pov("camera { orthographic location -5*z look_at 0 right 4*x up 3*y }
+        plane { z, 0 pigment { gradient x color_map { [0 rgb 0] [.26 rgb 0] [.26 rgb 1] [1 rgb 1] } scale 4 translate 1.97*x } finish { ambient 1 diffuse 0 } }");
+    let args = [
+        "scene.pov",
+        "--size",
+        "4x3",
+        "--sampling",
+        "recursive",
+        "--pixel",
+        "3,1",
+    ];
+    // The left half is one square of 1, the right one has a left half of 1 and a right one of 1/2.
+    let printed = json(folder.path(), &args);
+    assert_eq!(printed["color"][0], 0.875);
+    assert_eq!(printed["samples"].as_array().map(Vec::len), Some(18));
+    check(&printed);
+    let table = text(folder.path(), &args);
+    for row in table
+        .lines()
+        .filter(|line| line.contains("plane scene.pov"))
+    {
+        let (_, share) = row.split_once(", counts ").expect("a share");
+        let (above, below) = share.split_once('/').expect("a fraction");
+        let share = above.parse::<f64>().unwrap() / below.parse::<f64>().unwrap();
+        let number: usize = row.split_whitespace().next().unwrap().parse().unwrap();
+        assert_eq!(printed["samples"][number - 1]["share"], share, "{row}");
+    }
+    assert_eq!(table.matches(", counts ").count(), 18, "{table}");
+    let one = text(folder.path(), &[&args[..], &["--sample", "1"]].concat());
+    assert!(one.contains("sample 1 at (3, 1), counts 1/"), "{one}");
+}
+
+#[test]
+fn rays_through_a_lens_are_counted_as_samples() {
+    let folder = pov("light_source { <4, 6, -5>, 1 } plane { y, 0 pigment { checker rgb .9 rgb .2 } }
+        camera { location <0, 1, -6> look_at .5*y angle 40 aperture .6 focal_point .5*y blur_samples 7 }");
+    let args = [
+        "scene.pov",
+        "--size",
+        "40x30",
+        "--pixel",
+        "24,16",
+        "--sampling",
+    ];
+    let with = |words: &[&str]| flat(&text(folder.path(), &[&args[..], words].concat()));
+    let center = with(&["center"]);
+    assert!(
+        center.contains("7 samples (center, 7 rays through the lens for 1 place): "),
+        "{center}"
+    );
+    assert!(center.contains("`--sample N`") && !center.contains("`--sampling center`"));
+    let four = with(&["2x2"]);
+    assert!(
+        four.contains("28 samples (2x2, 28 rays through the lens for 4 places): ")
+            && four.contains("`--sampling center` looks at one place only"),
+        "{four}"
+    );
+    // The trees that follow need no advice how to see them.
+    let all = with(&["center", "--sample", "all"]);
+    assert!(
+        all.contains("first hit") && !all.contains("`--sample N`"),
+        "{all}"
+    );
+}
+
 #[test]
 fn numbers_have_the_digits_asked_for() {
     let folder = folder_with_scene();

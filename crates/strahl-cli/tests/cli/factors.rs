@@ -39,7 +39,7 @@ fn close(a: f64, b: f64) -> bool {
 /// Checks every factor of every ray against its product, to the last bit; returns the kinds of things it found.
 pub(crate) fn check(json: &Value) -> Vec<String> {
     let mut seen = Vec::new();
-    // The sum of each place, the number of its rays, and how often the place counts.
+    // The sum of each place, the number of its rays, and the share of the place in the mean.
     let mut means: Vec<(Value, Triple, f64, f64)> = Vec::new();
     for sample in list(&json["samples"]) {
         let rays = list(&sample["rays"]);
@@ -60,24 +60,22 @@ pub(crate) fn check(json: &Value) -> Vec<String> {
                 *count += 1.0;
             }
             _ => {
-                let times = number(&sample["times"]);
+                let share = number(&sample["share"]);
                 means.push((
                     sample["position"].clone(),
                     triple(&sample["color"]),
                     1.0,
-                    times,
+                    share,
                 ));
             }
         }
     }
     let mut mean = NONE;
-    let mut places = number(&json["places"]);
-    for (_, sum, count, times) in &means {
-        mean = plus(mean, sum.map(|x| x / count * times));
-        places += times - 1.0;
+    for (_, sum, count, share) in &means {
+        mean = plus(mean, sum.map(|x| x / count * share));
     }
     for (a, b) in mean.iter().zip(triple(&json["color"])) {
-        assert!(close(a / places, b), "{a} / {places} is not {b}");
+        assert!(close(*a, b), "{a} is not {b}");
     }
     seen.sort();
     seen.dedup();

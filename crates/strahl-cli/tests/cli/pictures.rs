@@ -219,3 +219,59 @@ fn ray_counts_agree_with_the_published_ones() {
         }
     }
 }
+
+/// Whether `--resume` leaves the picture alone.
+fn keeps(folder: &Path, args: &[&str]) -> bool {
+    let words = [&["render"], args, &["--sampling", "center", "--resume"]].concat();
+    let output = strahl(folder, &words);
+    let said = stderr(&output);
+    assert!(output.status.success(), "{said}");
+    let kept = said.contains("complete already");
+    assert_ne!(kept, said.contains("Mrays/s"), "{said}");
+    kept
+}
+
+#[test]
+fn resume_renders_pictures_of_another_size_and_cut_off_ones_in_all_formats() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    for format in strahl::formats::image::formats() {
+        let name = format!("a.{}", format.extensions[0]);
+        let args = |size| ["scene.nff", "-o", name.as_str(), "--size", size];
+        assert!(!keeps(f, &args("12x9")), "{name}");
+        assert!(keeps(f, &args("12x9")), "{name}");
+        assert!(!keeps(f, &args("9x12")), "{name}");
+        assert!(keeps(f, &args("9x12")), "{name}");
+        let whole = std::fs::read(f.join(&name)).expect("written");
+        for rest in [1, whole.len() / 2, whole.len() - 1] {
+            std::fs::write(f.join(&name), &whole[..rest]).expect("writable");
+            assert!(!keeps(f, &args("9x12")), "{name}: {rest} bytes");
+        }
+    }
+}
+
+#[test]
+fn resume_knows_the_size_of_regions_and_of_scenes() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    // The scene's own size is 48x40.
+    assert!(!keeps(f, &["scene.nff", "-o", "own.png"]));
+    assert!(keeps(f, &["scene.nff", "-o", "own.png"]));
+    assert!(keeps(f, &["scene.nff", "-o", "own.png", "--size", "48x40"]));
+    assert!(!keeps(
+        f,
+        &["scene.nff", "-o", "own.png", "--size", "40x48"]
+    ));
+    assert!(!keeps(f, &["scene.nff", "-o", "own.png"]));
+    for format in ["png", "exr"] {
+        let name = format!("part.{format}");
+        let part = ["scene.nff", "-o", name.as_str(), "--region", "4,5,10x8"];
+        assert!(!keeps(f, &part) && keeps(f, &part));
+        let full = [&part[..], &["--full-size"]].concat();
+        assert!(!keeps(f, &full) && keeps(f, &full));
+        assert!(!keeps(f, &part));
+    }
+    assert!(!keeps(f, &["-o", "demo.png", "--size", "8x6"]));
+    assert!(keeps(f, &["-o", "demo.png", "--size", "8x6"]));
+    assert!(!keeps(f, &["-o", "demo.png", "--region", "0,0,4x4"]));
+}

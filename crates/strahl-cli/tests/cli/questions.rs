@@ -31,6 +31,16 @@ fn info_check_and_formats_tell_what_there_is() {
     ] {
         assert!(formats.contains(part), "{part}");
     }
+    // The columns are straight.
+    let (tables, _) = formats.split_once("Accelerators").expect("a list");
+    let rows: Vec<&str> = tables.lines().filter(|l| l.starts_with("  ")).collect();
+    assert!(rows.len() > 12, "{formats}");
+    for row in rows {
+        let (name, endings) = row.split_at(15);
+        assert!(name.ends_with(' ') && endings.starts_with('.'), "{row}");
+    }
+    fails(folder.path(), &["view", "-"], 1, &["needs a file"]);
+    fails(folder.path(), &["view", "."], 1, &["is a folder"]);
 }
 
 #[test]

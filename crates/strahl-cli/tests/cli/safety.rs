@@ -9,6 +9,50 @@ fn write(folder: &Path, name: &str, text: &str) {
     std::fs::write(folder.join(name), text).expect("writable");
 }
 
+/// A picture that statistics replace would be lost.
+#[test]
+fn two_outputs_have_two_names() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    let render = ["render", "scene.nff", "--size", "4x3", "-o", "a.png"];
+    for more in [
+        &["--stats", "a.png"][..],
+        &["--stats", "./a.png"],
+        &["--profile=a.png"],
+        &["--stats", "s.json", "--profile=s.json"],
+    ] {
+        fails(f, &[&render[..], more].concat(), 1, &["named twice"]);
+    }
+    let output = strahl(f, &[&render[..], &["--stats", "a.json"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    // Names of one file are found out, too.
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("a.png", f.join("b.png")).expect("a link");
+        let more = ["--stats", "b.png"];
+        fails(f, &[&render[..], &more].concat(), 1, &["named twice"]);
+    }
+    let tile = ["render", "scene.nff", "--tile", "1/1", "-o", "t.exr"];
+    assert!(strahl(f, &tile).status.success());
+    let merge = ["merge", "t.exr", "-o", "m.png", "--stats"];
+    fails(f, &[&merge[..], &["m.png"]].concat(), 1, &["named twice"]);
+    let over = [&merge[..], &["t.exr"]].concat();
+    fails(f, &over, 1, &["t.exr is one of the tiles"]);
+    let both = ["merge", "t.exr", "-o", "-", "--stats", "-"];
+    fails(f, &both, 1, &["standard output"]);
+}
+
+#[test]
+fn heat_maps_spare_their_scene() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    std::fs::write(f.join("scene.png"), crate::SCENE).expect("writable");
+    let words = ["heatmap", "scene.png", "--format", "nff", "-o", "scene.png"];
+    fails(f, &words, 1, &["scene.png is the scene itself"]);
+    let kept = std::fs::read_to_string(f.join("scene.png")).expect("kept");
+    assert_eq!(kept, crate::SCENE);
+}
+
 #[test]
 fn memory_that_is_not_allowed_is_an_error_with_a_reason() {
     let folder = folder_with_scene();
@@ -251,6 +295,8 @@ fn shells_and_man_know_the_program() {
     }
     let page = |args: &[&str]| String::from_utf8_lossy(&strahl(f, args).stdout).into_owned();
     assert!(page(&["man"]).contains(".TH strahl 1"));
+    let slurm = page(&["man", "submit", "slurm"]);
+    assert!(slurm.contains(".TH strahl-submit-slurm 1") && slurm.contains("partition"));
     let render = page(&["man", "render"]);
     assert!(
         render.contains(".TH strahl-render 1") && render.contains("max\\-memory"),
@@ -262,6 +308,9 @@ fn shells_and_man_know_the_program() {
         1,
         &["nothing", "render, view, explain"],
     );
+    let nothing = ["man", "submit", "nothing"];
+    fails(f, &nothing, 1, &["nothing", "slurm, openjd, status"]);
+    fails(f, &["man", "render", "x"], 1, &["no commands of its own"]);
 }
 
 #[test]

@@ -262,6 +262,20 @@ fn changed_scenes_are_noticed_without_a_bundle() {
     );
 }
 
+/// The first frame is read twice, for its hash and for the look.
+#[test]
+fn messages_of_frames_are_printed_once() {
+    let folder = folder();
+    let f = folder.path();
+    let scene = "#debug concat(\"frame \", str(frame_number, 0, 0), \";\\n\") sphere { 0, 1 }";
+    fs::write(f.join("said.pov"), scene).unwrap();
+    let submit = "submit slurm said.pov -o s.png --frames 1-3 --size 64x64 --tiles 2 --dry-run";
+    let said = stderr(&call(f, submit));
+    for frame in ["frame 1;", "frame 2;", "frame 3;"] {
+        assert_eq!(said.matches(frame).count(), 1, "{said}");
+    }
+}
+
 #[test]
 fn scenes_with_effects_are_told() {
     let folder = folder();
@@ -293,6 +307,13 @@ fn templates_of_open_job_description_have_frames_and_tiles() {
     );
     let template = json(&fs::read(f.join("film.job/template.json")).unwrap());
     assert_eq!(template["extensions"][0], "TASK_CHUNKING");
+    // Stills have no chunks, so they need no extension, which some queues lack.
+    run(
+        f,
+        "submit openjd scene.pov -o still.png +W64 +H48 -Llib --quiet",
+    );
+    let still = json(&fs::read(f.join("still.job/template.json")).unwrap());
+    assert_eq!(still.get("extensions"), None);
     assert_eq!(
         template["steps"][1]["dependencies"][0]["dependsOn"],
         "Render"
@@ -314,6 +335,41 @@ fn templates_of_open_job_description_have_frames_and_tiles() {
         "{said}"
     );
     assert!(run(f, "submit resume film.job").contains("openjd run"));
+}
+
+/// The help listed options that `submit` refuses.
+#[test]
+fn the_help_of_submit_shows_what_jobs_take() {
+    let folder = folder();
+    let f = folder.path();
+    for engine in ["slurm", "openjd"] {
+        let help = run(f, &format!("submit {engine} --help"));
+        assert!(
+            help.contains("--size <WxH>") && help.contains("[SCENE]"),
+            "{help}"
+        );
+        assert!(
+            !help.contains("standard output") && !help.contains("demo scene"),
+            "{help}"
+        );
+        for (option, value) in [
+            ("--stats", "=s.json"),
+            ("--profile", ""),
+            ("--no-output", ""),
+            ("--tile", "=1/2"),
+            ("--region", "=0,0,4x4"),
+            ("--region", "=0,0,4x4 --full-size"),
+            ("--resume", ""),
+            ("--allow-write", "=lib"),
+        ] {
+            let shown = |line: &str| line.split_whitespace().next() == Some(option);
+            assert!(!help.lines().any(shown), "{option}: {help}");
+            let words =
+                format!("submit {engine} scene.pov -o a.png -Llib --dry-run {option}{value}");
+            let words: Vec<&str> = words.split_whitespace().collect();
+            fails(f, &words, 1, &[option, "no meaning for a job"]);
+        }
+    }
 }
 
 #[test]

@@ -110,7 +110,7 @@ fn what_is_wrong_with_tiles_is_told() {
     merge("t1.exr t4.exr", &["tiles are missing: 2-3 of 4"]);
     merge("t1.exr t2.exr t2.exr t3.exr t4.exr", &["both tile 2 of 4"]);
     merge("whole.exr t1.exr", &["whole.exr", "not a tile"]);
-    merge("none.exr", &["none.exr", "no such file"]);
+    merge("none.exr", &["there is no file `none.exr`"]);
 
     run(
         folder.path(),

@@ -60,7 +60,7 @@ const FORMATS: &[FormatInfo] = {
     use ImageFormat::*;
     &[
         FormatInfo { format: Png, extensions: &["png"], name: "PNG", description: "8 or 16 bit sRGB, lossless", layers: false, alpha: true, grayscale: true, regions: true, max_side: I32_MAX, encode: png::encode },
-        FormatInfo { format: Exr, extensions: &["exr"], name: "OpenEXR", description: "16 or 32 bit linear floats, layers, lossless", layers: true, alpha: true, grayscale: false, regions: true, max_side: I32_MAX, encode: exr::encode },
+        FormatInfo { format: Exr, extensions: &["exr"], name: "OpenEXR", description: "32 bit linear floats, layers, lossless", layers: true, alpha: true, grayscale: false, regions: true, max_side: I32_MAX, encode: exr::encode },
         FormatInfo { format: Hdr, extensions: &["hdr", "pic"], name: "Radiance HDR", description: "linear, 8 bit with a common exponent", layers: false, alpha: false, grayscale: false, regions: false, max_side: I32_MAX, encode: hdr::encode },
         FormatInfo { format: Ppm, extensions: &["ppm", "pnm"], name: "PPM", description: "8 or 16 bit sRGB, uncompressed", layers: false, alpha: false, grayscale: true, regions: false, max_side: I32_MAX, encode: ppm::encode },
         FormatInfo { format: Jpeg, extensions: &["jpg", "jpeg"], name: "JPEG", description: "8 bit sRGB, small, lossy", layers: false, alpha: false, grayscale: false, regions: false, max_side: U16_MAX, encode: jpeg::encode },

@@ -118,7 +118,7 @@ impl<'a> Text<'a> {
                     "`{}` is not {what}: it is a binary file, not a text",
                     self.name
                 ))
-                .hint("name the format with `--format` if the file extension is wrong")
+                .hint("name the format with `--scene-format` if the file extension is wrong")
             });
         }
         binary

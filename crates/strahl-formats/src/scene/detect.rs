@@ -172,7 +172,7 @@ pub(super) fn of_file(path: &Path, bytes: &[u8]) -> Fallible<SceneFormat> {
             Some(ending) => format!("`{shown}`: unknown ending `.{ending}`, and the content does not show its format"),
             None => format!("`{shown}`: the name has no ending, and the content does not show its format"),
         };
-        let hint = format!("name the format with `--format`; the formats are {}", names());
+        let hint = format!("name the format with `--scene-format`; the formats are {}", names());
         Box::new(Diagnostic::error(message).hint(hint))
     })
 }

@@ -160,7 +160,7 @@ fn files_that_cannot_be_read_are_one_error() {
         "{unknown}"
     );
     assert!(unknown.contains(
-        "= help: name the format with `--format`; the formats are nff, obj, ply, stl, gltf"
+        "= help: name the format with `--scene-format`; the formats are nff, obj, ply, stl, gltf"
     ));
     std::fs::write(path("noise.nff"), [0u8, 255, 3, 9, 200, 17]).expect("written");
     assert!(

@@ -46,6 +46,7 @@ impl Sample {
             pass: sample.pass,
             lens_ray: sample.ray,
             times: sample.times,
+            share: sample.share,
             color: color(sample.color),
             rays: nodes.map(|node| TreeRay::new(scene, node)).collect(),
         }

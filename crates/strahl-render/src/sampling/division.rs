@@ -2,8 +2,8 @@
 
 use super::Sample;
 use super::refinement::{Compared, Refinement, Slopes};
-use hashbrown::HashMap;
 use hashbrown::hash_map::Entry;
+use hashbrown::{HashMap, HashSet};
 use strahl_scene::WorkingSpace;
 use strahl_shade::Color;
 
@@ -165,6 +165,33 @@ impl<'a> Division<'a> {
     }
 }
 
+/// The share of each place in the mean of a pixel that was divided, by the place; both are given from the pixel's top left corner. `inner` are the places
+/// that were looked at besides the corners.
+///
+/// A place in the middle of a square lies on the border of no larger and of no equal one, so it was looked at only if this square is divided.
+pub(crate) fn shares(
+    inner: &[(f64, f64)],
+    refinement: &Refinement,
+) -> impl Fn(f64, f64) -> f64 + use<> {
+    let size = 1 << refinement.depth.saturating_sub(1);
+    let number = move |x: f64, y: f64| [x, y].map(|v| (v * f64::from(size)) as u32);
+    let inner: HashSet<[u32; 2]> = inner.iter().map(|&(x, y)| number(x, y)).collect();
+    let mut shares = HashMap::new();
+    let mut waiting = vec![([0, 0], size, 1.0)];
+    while let Some(([i, j], side, area)) = waiting.pop() {
+        let half = side / 2;
+        let corners = |side| [[i, j], [i + side, j], [i, j + side], [i + side, j + side]];
+        if half > 0 && inner.contains(&[i + half, j + half]) {
+            waiting.extend(corners(half).map(|at| (at, half, area / 4.0)));
+            continue;
+        }
+        for corner in corners(side) {
+            *shares.entry(corner).or_insert(0.0) += area / 4.0;
+        }
+    }
+    move |x, y| shares.get(&number(x, y)).copied().unwrap_or(0.0)
+}
+
 impl Square {
     /// The corners of its quarters that are not its own: top, left, middle, right, bottom.
     fn between(&self) -> [(u32, u32); 5] {
@@ -238,6 +265,38 @@ mod tests {
     fn alike_corners_need_no_rays() {
         let gray = Sample::from(Color::gray(0.25));
         assert_eq!(divided(3, 3, |_, _| gray), (vec![gray; 3], 0));
+    }
+
+    #[test]
+    fn shares_are_the_quarters_of_undivided_squares() {
+        for edge in [0.7, 0.1, 0.5, 2.0] {
+            let refinement = Refinement {
+                depth: 4,
+                ..Refinement::DEFAULT
+            };
+            let mut division = Division::new(&refinement, WorkingSpace::Linear);
+            let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+            // What is seen depends on both coordinates.
+            let seen = |&(x, y): &(f64, f64)| {
+                let bright = if x < edge { 1.0 + x } else { 0.0 };
+                Color::new(bright, bright * y, f64::from(x + y < 0.9))
+            };
+            let mut inner = vec![];
+            division.add((0, 0), corners.map(|at| Sample::from(seen(&at))));
+            let means = division.means(|places| {
+                inner.extend_from_slice(places);
+                Some(places.iter().map(|at| Sample::from(seen(at))).collect())
+            });
+            let share = shares(&inner, &refinement);
+            let (mut sum, mut all) = (Color::BLACK, 0.0);
+            for at in corners.iter().chain(&inner) {
+                sum += seen(at) * share(at.0, at.1);
+                all += share(at.0, at.1);
+            }
+            assert_eq!(all, 1.0);
+            let off = (sum - means.expect("it does not leave off")[0].color).map(f64::abs);
+            assert!(off.max_component() < 1e-15, "{edge}: {sum:?}");
+        }
     }
 
     #[test]
