@@ -194,19 +194,25 @@ impl Isosurface {
     /// Whether narrow bounds of the function are at most half as wide as wide ones in most small cells: then they exclude so many cells near
     /// the surface that they are worth their time.
     fn gains_by_narrow_bounds(&self, workspace: &mut Workspace) -> bool {
-        const CELLS: u32 = 32;
+        // Half of so many cells decide.
+        const CELLS: u32 = 16;
         let bounds = self.container.bounds();
         let half = DVec3::ONE * (0.5 * self.cell_size());
-        let gains = (0..CELLS).filter(|&number| {
+        let mut left = CELLS / 2;
+        for number in 0..CELLS {
             let place = trust::place(&bounds, number);
             let cell = Aabb::new(place - half, place + half);
-            let [wide, narrow] = [
-                self.bounds_within(workspace, &cell),
-                self.narrow_bounds_within(workspace, &cell),
-            ];
-            narrow.max - narrow.min <= 0.5 * (wide.max - wide.min)
-        });
-        2 * gains.count() as u32 > CELLS
+            let wide = self.bounds_within(workspace, &cell);
+            let narrow = self.narrow_bounds_within(workspace, &cell);
+            if narrow.max - narrow.min <= 0.5 * (wide.max - wide.min) {
+                continue;
+            }
+            left -= 1;
+            if left == 0 {
+                return false;
+            }
+        }
+        true
     }
 
     /// The function.
