@@ -300,7 +300,8 @@ fn narrow_bounds_know_what_changes_together() {
         let power = g.powi(q, 3);
         g.sub(power, q)
     };
-    let functions: [&dyn Fn(&mut Graph, [Expr; 3]) -> Expr; 3] = [&torus, &turn, &quotient];
+    type Build<'a> = &'a dyn Fn(&mut Graph, [Expr; 3]) -> Expr;
+    let functions: [Build<'_>; 3] = [&torus, &turn, &quotient];
     for (number, build) in functions.into_iter().enumerate() {
         let [wide, narrow] = surplus(build, 0.02);
         assert!(
