@@ -30,6 +30,17 @@ impl Appearances {
         }
     }
 
+    /// All of them, changed.
+    pub(crate) fn map(self, mut change: impl FnMut(Appearance) -> Appearance) -> Self {
+        match self {
+            Self::One(appearance) => Self::One(change(appearance)),
+            Self::Leaves { appearances, whole } => Self::Leaves {
+                appearances: appearances.iter().map(|a| change(*a)).collect(),
+                whole,
+            },
+        }
+    }
+
     /// The appearance of the leaf that says what is inside of the whole.
     pub(crate) fn of_inside(&self) -> Option<&Appearance> {
         match self {

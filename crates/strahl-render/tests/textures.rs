@@ -1,7 +1,7 @@
 //! POV-Ray's textures on objects: their space, layers and shadows.
 
 use crate::common::{compiled, rendered};
-use strahl_geometry::{Cuboid, Sphere};
+use strahl_geometry::{Cuboid, MeshData, Shape, Sphere, TriangleMesh};
 use strahl_math::{DVec3, Ray};
 use strahl_render::{TraceSettings, trace::TreeTracer};
 use strahl_scene::{Camera, CsgOp, Object, ObjectExt, Scene};
@@ -96,6 +96,44 @@ fn a_texture_moves_with_its_object() {
         let scene = scene.clone().add(Object::instance(outer).translated(aside));
         let eye = aside + aside + farther + DVec3::new(place, 0.5, 9.0);
         assert_eq!(seen(scene, eye), color);
+    }
+}
+
+/// They are in spaces of their own.
+#[test]
+fn textures_of_objects_far_from_the_origin_stay_where_they_are() {
+    let look = || checkered().material.expect("a material");
+    // A whole number of blocks away.
+    let place = DVec3::new(500_000.0, 5_400_000.0, 300.0);
+    let square = |at: DVec3| {
+        let corners = [(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
+        let corners = corners.map(|(x, y)| at + DVec3::new(x, y, 0.9));
+        let data = MeshData::from_f64(&corners, vec![[0, 1, 2], [0, 2, 3]]);
+        Object::from(Shape::from(TriangleMesh::try_new(data).expect("a mesh")))
+    };
+    let ball = |at: DVec3| Object::from(Sphere::new(at, 0.95));
+    let part = |at: DVec3| {
+        let cut = Cuboid::new(at - 0.6, at + 0.93);
+        Object::csg(CsgOp::Intersection, vec![ball(at), cut.into()])
+    };
+    let objects: [&dyn Fn(DVec3) -> Object; 3] = [&square, &ball, &part];
+    for (number, object) in objects.into_iter().enumerate() {
+        let with = |mut object: Object| {
+            object.material = Some(look());
+            object
+        };
+        let colors = |object: Object, at: DVec3| {
+            [(0.4, 0.3), (-0.4, 0.3), (-0.4, -0.3)].map(|(x, y)| {
+                let scene = Scene::new().add(object.clone());
+                seen(scene, at + DVec3::new(x, y, 9.0))
+            })
+        };
+        let near = colors(with(object(DVec3::ZERO)), DVec3::ZERO);
+        assert_ne!(near[0], near[1]);
+        // Made there, and carried there.
+        assert_eq!(colors(with(object(place)), place), near, "{number}");
+        let carried = with(object(DVec3::ZERO)).translated(place + 0.1);
+        assert_eq!(colors(carried, place + 0.1), near, "{number}");
     }
 }
 

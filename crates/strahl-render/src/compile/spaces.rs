@@ -1,5 +1,6 @@
 use super::flatten::{Flat, FlatGroup};
-use crate::appearance::Appearances;
+use super::materials::MaterialTable;
+use crate::appearance::{Appearance, Appearances};
 use crate::light_sets::Lit;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
@@ -26,6 +27,32 @@ struct Space {
     members: Vec<u32>,
 }
 
+/// Where textures are evaluated.
+struct Textures<'a> {
+    spaces: &'a mut Vec<Transform>,
+    materials: &'a MaterialTable,
+}
+
+impl Textures<'_> {
+    /// The appearance of an object that has moved from an anchor to the origin of its space: its texture stays where it was.
+    fn moved(&mut self, appearance: Appearance, anchor: DVec3) -> Appearance {
+        if self.materials.get(appearance.material).texture.is_none() {
+            return appearance;
+        }
+        let home = Transform::translate(-anchor);
+        let before = self.spaces.get(appearance.texture_space as usize);
+        let space = before.map_or(home, |space| space.then(&home));
+        // Neighbours often have the same one.
+        if self.spaces.last() != Some(&space) {
+            self.spaces.push(space);
+        }
+        Appearance {
+            texture_space: self.spaces.len() as u32 - 1,
+            ..appearance
+        }
+    }
+}
+
 /// Moves clusters of small objects far from the origin into spaces of their own: groups whose origin is near them.
 ///
 /// Positions relative to the space's anchor keep all their digits, the f32 boxes of its accelerator are tight, and rays that
@@ -37,11 +64,15 @@ pub(super) fn open_spaces(flat: &mut Flat) {
     for index in 0..groups {
         let first = flat.groups.len() as u32;
         let group = &mut flat.groups[index];
+        let mut textures = Textures {
+            spaces: &mut flat.texture_spaces,
+            materials: &flat.materials,
+        };
         let mut spaces: Vec<Space> = clusters(group)
             .into_iter()
-            .map(|cluster| extract(group, cluster))
+            .map(|cluster| extract(group, cluster, &mut textures))
             .collect();
-        spaces.extend(mesh_spaces(group));
+        spaces.extend(mesh_spaces(group, &mut textures));
         if spaces.is_empty() {
             continue;
         }
@@ -75,17 +106,17 @@ pub(super) fn open_spaces(flat: &mut Flat) {
     }
 }
 
-/// Spaces for the meshes that are small and far: those whose vertices are relative to an anchor. Meshes that are near each other share one.
-fn mesh_spaces(group: &FlatGroup) -> Vec<Space> {
+/// Spaces for the meshes that are small and far and have an anchor. Meshes that are near each other share one.
+fn mesh_spaces(group: &FlatGroup, textures: &mut Textures<'_>) -> Vec<Space> {
     let mut spaces: Vec<Space> = vec![];
     // For each mesh its space and its number there.
     let mut places = vec![None; group.meshes.len()];
     for (mesh_use, place) in group.meshes.iter().zip(&mut places) {
-        let anchor = mesh_use.mesh.anchor();
-        if anchor == DVec3::ZERO {
+        let (anchor, bounds) = (mesh_use.mesh.anchor(), mesh_use.mesh.bounds());
+        let reach = bounds.max_abs() * FAR_MESHES;
+        if anchor == DVec3::ZERO || !(bounds.size().max_element() < reach) {
             continue;
         }
-        let reach = mesh_use.mesh.bounds().max_abs() * FAR_MESHES;
         let is_near = |space: &Space| (space.anchor - anchor).abs().max_element() < reach;
         let number = spaces.iter().position(is_near);
         let at = number.map_or(anchor, |number| spaces[number].anchor);
@@ -105,7 +136,7 @@ fn mesh_spaces(group: &FlatGroup) -> Vec<Space> {
         *place = Some((number, meshes.len() as u32));
         meshes.push(MeshUse {
             mesh: Arc::new(mesh),
-            appearance: mesh_use.appearance,
+            appearance: textures.moved(mesh_use.appearance, at),
         });
     }
     if spaces.is_empty() {
@@ -192,7 +223,7 @@ fn split_at_gaps(mut list: Vec<(u32, Aabb)>, axis: usize) -> Vec<Vec<(u32, Aabb)
 }
 
 /// Moves shapes from a group into a new one around an anchor.
-fn extract(group: &FlatGroup, members: Vec<u32>) -> Space {
+fn extract(group: &FlatGroup, members: Vec<u32>, textures: &mut Textures<'_>) -> Space {
     let mut inner = FlatGroup::default();
     let mut anchor = None;
     for id in &members {
@@ -208,6 +239,7 @@ fn extract(group: &FlatGroup, members: Vec<u32>) -> Space {
             PrimKind::Sphere(number) => Appearances::One(group.spheres.appearance(number)),
             _ => continue,
         };
+        let appearance = appearance.map(|appearance| textures.moved(appearance, anchor));
         inner.add_shape(shape, appearance, prim.visible, prim.flags);
         if let PrimKind::Shape(index) = prim.kind()
             && let Some(inside) = &group.shapes[index as usize].inside
