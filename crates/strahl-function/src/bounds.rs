@@ -27,9 +27,9 @@ pub struct Bounds {
 
 /// The software functions of `strahl_math::det` are good to about one unit in the last place (musl's documentation);
 /// four are allowed for.
-pub(crate) const LIBRARY_ERROR: f64 = 4.0 * f64::EPSILON;
+const LIBRARY_ERROR: f64 = 4.0 * f64::EPSILON;
 /// `det::pow` multiplies up to six squares and six factors for whole exponents; 64 roundings bound them all.
-pub(crate) const POWER_ERROR: f64 = 64.0 * f64::EPSILON;
+const POWER_ERROR: f64 = 64.0 * f64::EPSILON;
 impl Bounds {
     /// Every number.
     pub const ENTIRE: Self = Self::new(f64::NEG_INFINITY, f64::INFINITY);

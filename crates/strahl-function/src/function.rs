@@ -1,4 +1,3 @@
-use crate::affine::Affine;
 use crate::bounds::Bounds;
 use crate::compile::compile;
 use crate::cost::Cost;
@@ -36,7 +35,6 @@ pub struct Workspace {
     points: Registers<f64>,
     lanes: Registers<Lanes>,
     bounds: Registers<Bounds>,
-    affine: Registers<Affine>,
     duals: Registers<Dual>,
     rates: Registers<Rate>,
     spent: u64,
@@ -212,17 +210,6 @@ impl Function {
         let stack = workspace.bounds.of(tape);
         fill(stack, tape, arguments, Bounds::with_both_zeros);
         run(tape, stack, &mut self.fuel())
-    }
-
-    /// The same, as narrow as [`bounds`](Self::bounds) or narrower, in two to four times the time: of how the value changes in a small box it
-    /// is known that most of it is linear in the first three arguments (affine arithmetic).
-    pub fn narrow_bounds(&self, workspace: &mut Workspace, arguments: &[Bounds]) -> Bounds {
-        let tape = &*self.tape;
-        let stack = workspace.affine.of(tape);
-        for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
-            *register = Affine::argument(i, arguments.get(i).copied().unwrap_or(Bounds::NAN));
-        }
-        run(tape, stack, &mut self.fuel()).bounds
     }
 
     /// Bounds of the value on a part of a line, where the arguments are within bounds, and of its derivative along the line, on which

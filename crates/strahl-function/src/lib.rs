@@ -1,5 +1,5 @@
 //! Mathematical functions of points: built as a graph, compiled to a tape, evaluated at points, over batches of points,
-//! over boxes (with an outward-rounded interval as result, or a narrower one by affine arithmetic), on lines through boxes (with bounds of the derivative along them) and
+//! over boxes (with an outward-rounded interval as result), on lines through boxes (with bounds of the derivative along them) and
 //! with their gradient.
 //!
 //! * [`Graph`] builds a function of named parameters; [`Expr`] is a value in it.
@@ -17,7 +17,6 @@
 //! All ways to evaluate run the same instructions, so the value of a batch or of a gradient has the bits of the
 //! value at the point, and bounds contain it. Transcendental functions are those of [`strahl_math::det`].
 
-mod affine;
 mod bounds;
 mod build;
 mod compile;

@@ -74,7 +74,7 @@ impl Rate {
 
 /// The derivative of an operation on values within `a`, which gives values within `value`; nothing for steps.
 #[inline(always)]
-pub(crate) fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
+fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
     let squared = a.square();
     Some(match op {
         UnaryOp::Neg => Bounds::new(-1.0, -1.0),
@@ -110,7 +110,7 @@ pub(crate) fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
 
 /// The rate of an operation on two values that gives values within `value`.
 #[inline(always)]
-pub(crate) fn rate(op: BinaryOp, a: Rate, b: Rate, value: Bounds) -> Bounds {
+fn rate(op: BinaryOp, a: Rate, b: Rate, value: Bounds) -> Bounds {
     match op {
         BinaryOp::Add => a.rate.add(b.rate),
         BinaryOp::Sub => a.rate.sub(b.rate),

@@ -143,22 +143,16 @@ proptest! {
         let axis = |i: usize| Bounds::new(low[i], low[i] + size[i]);
         let region = [axis(0), axis(1), axis(2)];
         let bounds = f.bounds(&mut ws, &region);
-        let narrow = f.narrow_bounds(&mut ws, &region);
-        prop_assert!(narrow.min >= bounds.min && narrow.max <= bounds.max, "{narrow:?} {bounds:?}");
-        prop_assert!(!narrow.nan || bounds.nan);
         for t in inside {
             let p: Vec<f64> = (0..3).map(|i| f64::min(low[i] + t[i] * size[i], region[i].max)).collect();
             let v = f.value(&mut ws, &p);
             prop_assert!(bounds.contains(v), "{v:e} at {p:?} is not in {bounds:?}");
-            prop_assert!(narrow.contains(v), "{v:e} at {p:?} is not in {narrow:?}");
         }
         // A point's bounds contain its value, signs of zero included.
         for p in [low, [0.0, -0.0, low[2]], [-0.0, low[1], 0.0]] {
             let v = f.value(&mut ws, &p);
             let bounds = f.bounds(&mut ws, &p.map(Bounds::point));
             prop_assert!(bounds.contains(v), "{v:e} at {p:?} is not in {bounds:?}");
-            let narrow = f.narrow_bounds(&mut ws, &p.map(Bounds::point));
-            prop_assert!(narrow.contains(v), "{v:e} at {p:?} is not in {narrow:?}");
         }
     }
 
@@ -222,7 +216,6 @@ proptest! {
         prop_assert!(same(f.gradient(&mut ws, &point).0, v));
         let region: Vec<Bounds> = ends.iter().map(|&(a, b)| Bounds::new(a, b)).collect();
         f.bounds(&mut ws, &region);
-        f.narrow_bounds(&mut ws, &region);
         f.rate(&mut ws, &region, &point);
         let columns: Vec<&[f64]> = (0..point.len()).map(|i| &point[i..=i]).collect();
         let mut values = [0.0; 2];
@@ -246,71 +239,6 @@ fn slopes(build: impl Fn(&mut Graph, [Expr; 3]) -> Expr, p: [f64; 3]) -> ([f64; 
         (f.value(&mut ws, &b) - f.value(&mut ws, &a)) / (b[i] - a[i])
     });
     (gradient, differences)
-}
-
-/// By how much bounds in a box of this size are too wide, relative to the values there: those of intervals, and the narrow ones.
-fn surplus(build: impl Fn(&mut Graph, [Expr; 3]) -> Expr, size: f64) -> [f64; 2] {
-    let mut g = Graph::new(["x", "y", "z"]);
-    let xyz = g.xyz();
-    let root = build(&mut g, xyz);
-    let f = g.finish(root).expect("small");
-    let mut ws = Workspace::new();
-    let low = [0.37, 0.61, 0.83];
-    let steps = || (0..=8).map(|i| f64::from(i) / 8.0);
-    let mut values = vec![];
-    for x in steps() {
-        for y in steps() {
-            for z in steps() {
-                let p = [low[0] + size * x, low[1] + size * y, low[2] + size * z];
-                values.push(f.value(&mut ws, &p));
-            }
-        }
-    }
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let region = low.map(|x| Bounds::new(x, x + size));
-    [
-        f.bounds(&mut ws, &region),
-        f.narrow_bounds(&mut ws, &region),
-    ]
-    .map(|b| (b.max - b.min) / (most - least) - 1.0)
-}
-
-#[test]
-fn narrow_bounds_know_what_changes_together() {
-    // A torus as a quartic, a turn that keeps distances, and a quotient: what is too wide is halved with the box.
-    let torus = |g: &mut Graph, [x, y, z]: [Expr; 3]| {
-        let squares = [x, y, z].map(|v| g.square(v));
-        let [ring, all] =
-            [[squares[0], squares[2]].to_vec(), squares.to_vec()].map(|s| g.total(&s));
-        let all = g.offset(all, 0.8);
-        let (ring, all) = (g.scaled(ring, 4.0), g.square(all));
-        g.sub(ring, all)
-    };
-    let turn = |g: &mut Graph, [x, y, z]: [Expr; 3]| {
-        let (sin, cos) = (g.sin(z), g.cos(z));
-        let [xc, ys, xs, yc] = [(x, cos), (y, sin), (x, sin), (y, cos)].map(|(a, b)| g.mul(a, b));
-        let (a, b) = (g.sub(xc, ys), g.add(xs, yc));
-        g.length(&[a, b])
-    };
-    let quotient = |g: &mut Graph, [x, y, z]: [Expr; 3]| {
-        let a = g.product(&[x, y, z]);
-        let b = g.total(&[x, y, z]);
-        let q = g.div(a, b);
-        let power = g.powi(q, 3);
-        g.sub(power, q)
-    };
-    type Build<'a> = &'a dyn Fn(&mut Graph, [Expr; 3]) -> Expr;
-    let functions: [Build<'_>; 3] = [&torus, &turn, &quotient];
-    for (number, build) in functions.into_iter().enumerate() {
-        let [wide, narrow] = surplus(build, 0.02);
-        assert!(
-            narrow < 0.35 * wide && narrow < 0.3,
-            "{number}: {wide} {narrow}"
-        );
-        let [_, narrower] = surplus(build, 0.005);
-        assert!(narrower < 0.4 * narrow, "{number}: {narrow} {narrower}");
-    }
 }
 
 #[test]

@@ -76,10 +76,6 @@ pub struct Isosurface {
     /// Of which arguments rates of change can be known.
     rates: Rates,
     octree: Octree,
-    /// How often its cells are halved.
-    levels: u32,
-    /// Whether the function's narrow bounds are worth their time.
-    wants_narrow_bounds: bool,
     /// How far cells are widened when they are examined.
     cell_pad: DVec3,
     /// The octree's bounds, as much wider: points within are in the cells that are found for them.
@@ -107,9 +103,6 @@ const CELL_PAD: f64 = 256.0 * f64::EPSILON;
 
 /// The octree's cells are halved so often.
 const LEVELS: u32 = 6;
-
-/// The same if narrow bounds exclude more cells: then larger ones do.
-const NARROW_LEVELS: u32 = 5;
 
 /// So many cells at most are bounded at once, where the function may be bounded on segments: longer ones go through so many cells of noise that
 /// bounds are too wide.
@@ -159,18 +152,11 @@ impl Isosurface {
             trusts_gradient: OnceLock::new(),
             rates,
             octree: Octree::new(cube_around(bounds), LEVELS),
-            levels: LEVELS,
-            wants_narrow_bounds: false,
             cell_pad,
             reach: bounds.padded(cell_pad),
         };
         if rates == Rates::OfSegments && !surface.has_rates_in_cells() {
             surface.rates = Rates::Unknown;
-        }
-        if is_bounded && with_workspace(|workspace| surface.gains_by_narrow_bounds(workspace)) {
-            surface.wants_narrow_bounds = true;
-            surface.levels = NARROW_LEVELS;
-            surface.octree = Octree::new(cube_around(bounds), NARROW_LEVELS);
         }
         Ok(surface)
     }
@@ -189,30 +175,6 @@ impl Isosurface {
                 !rate.nan
             })
         })
-    }
-
-    /// Whether narrow bounds of the function are at most half as wide as wide ones in most small cells: then they exclude so many cells near
-    /// the surface that they are worth their time.
-    fn gains_by_narrow_bounds(&self, workspace: &mut Workspace) -> bool {
-        // Half of so many cells decide.
-        const CELLS: u32 = 16;
-        let bounds = self.container.bounds();
-        let half = DVec3::ONE * (0.5 * self.cell_size());
-        let mut left = CELLS / 2;
-        for number in 0..CELLS {
-            let place = trust::place(&bounds, number);
-            let cell = Aabb::new(place - half, place + half);
-            let wide = self.bounds_within(workspace, &cell);
-            let narrow = self.narrow_bounds_within(workspace, &cell);
-            if narrow.max - narrow.min <= 0.5 * (wide.max - wide.min) {
-                continue;
-            }
-            left -= 1;
-            if left == 0 {
-                return false;
-            }
-        }
-        true
     }
 
     /// The function.
@@ -241,11 +203,6 @@ impl Isosurface {
     /// Bounds of the function less the threshold.
     fn bounds_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Bounds {
         self.less_threshold(self.function.bounds(workspace, &sides(cell)))
-    }
-
-    /// The same, narrower and slower.
-    fn narrow_bounds_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Bounds {
-        self.less_threshold(self.function.narrow_bounds(workspace, &sides(cell)))
     }
 
     fn less_threshold(&self, values: Bounds) -> Bounds {
@@ -304,15 +261,7 @@ impl Isosurface {
             return Content::Empty { is_inside: None };
         }
         if !self.trusts_gradient(workspace) {
-            let wide = self.bounds_within(workspace, &cell);
-            let inside = side(wide).or_else(|| {
-                // In large cells they are hardly narrower.
-                let is_small = cell.size().max_element() < 2.5 * self.cell_size();
-                let is_wanted = is_small && self.wants_narrow_bounds;
-                let narrow = || self.narrow_bounds_within(workspace, &cell);
-                is_wanted.then(narrow).and_then(side)
-            });
-            return match inside {
+            return match side(self.bounds_within(workspace, &cell)) {
                 None => Content::Surface,
                 is_inside => Content::Empty { is_inside },
             };
@@ -328,7 +277,7 @@ impl Isosurface {
 
     /// The largest extent of one of the octree's smallest cells.
     fn cell_size(&self) -> f64 {
-        self.size() / f64::from(1_u32 << self.levels)
+        self.size() / f64::from(1_u32 << LEVELS)
     }
 
     /// Parts of a ray that are not longer are not divided, except for rounding.

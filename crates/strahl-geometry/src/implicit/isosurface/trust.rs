@@ -58,7 +58,7 @@ impl Isosurface {
 }
 
 /// Places that fill a box evenly: a sequence of low discrepancy (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
-pub(super) fn place(bounds: &Aabb, number: u32) -> DVec3 {
+fn place(bounds: &Aabb, number: u32) -> DVec3 {
     const STEP: DVec3 = DVec3::new(
         0.819_172_513_396_164_5,
         0.671_043_606_703_789_3,
