@@ -146,6 +146,11 @@ impl Function {
         self.formula.size
     }
 
+    /// The graph it has been built as, and the node that is its value.
+    pub(crate) fn formula(&self) -> (&Graph, Expr) {
+        (&self.formula.graph, self.formula.root)
+    }
+
     /// The function's number, if it doesn't depend on its arguments.
     pub fn constant(&self) -> Option<f64> {
         self.formula.graph.known(self.formula.root)

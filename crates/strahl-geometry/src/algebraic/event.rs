@@ -5,7 +5,7 @@ use strahl_math::Interval;
 
 /// The events along a ray, in this order.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Event {
+pub(crate) enum Event {
     /// The state just behind the start of the range. Without this event it is outside.
     Start { inside: bool },
     /// The surface is crossed.
@@ -14,12 +14,12 @@ pub(super) enum Event {
 
 /// A query for the crossings of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Question {
-    pub(super) range: Interval,
+pub(crate) struct Question {
+    pub(crate) range: Interval,
     /// Whether the ray starts on the surface.
-    pub(super) on_surface: bool,
+    pub(crate) on_surface: bool,
     /// Whether the errors of the parameters are wanted.
-    pub(super) errors: bool,
+    pub(crate) errors: bool,
 }
 
 /// The first crossing in the range.

@@ -14,5 +14,6 @@ mod terms;
 
 pub(crate) use blob::Pieces;
 pub use blob::{Blob, BlobComponent};
+pub(crate) use event::{Event, Question};
 pub use polynomial::Polynomial;
 pub use superellipsoid::Superellipsoid;

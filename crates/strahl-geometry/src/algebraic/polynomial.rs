@@ -148,6 +148,17 @@ impl Polynomial {
         self.terms.evaluate(p.x, p.y, p.z)
     }
 
+    /// The distance of a point from the surface, in first order.
+    pub(crate) fn distance(&self, point: DVec3) -> f64 {
+        let Dual { value, gradient } = self.dual(point * self.per_length);
+        let steepness = gradient.length();
+        if steepness > 0.0 {
+            value.abs() / steepness * self.length
+        } else {
+            f64::INFINITY
+        }
+    }
+
     fn dual(&self, p: DVec3) -> Dual {
         self.terms
             .evaluate((p.x, DVec3::X), (p.y, DVec3::Y), (p.z, DVec3::Z))
@@ -212,6 +223,30 @@ impl Polynomial {
         }
     }
 
+    /// A stretch of the ray, between the ends of `s` -1 and 1; for a ray that starts on the surface from its start on.
+    fn segment_within(&self, ray: &Ray, stretch: Interval, on_surface: bool) -> Option<Segment> {
+        // A bit longer, so that roots at the ends are not beyond them.
+        const LONGER: f64 = 1.0 + 1e-9;
+        let (o, d) = (
+            ray.origin * self.per_length,
+            ray.direction * self.per_length,
+        );
+        let (t, reach) = if on_surface {
+            (0.0, stretch.max)
+        } else {
+            let half = 0.5 * (stretch.max - stretch.min);
+            (stretch.min + half, half)
+        };
+        let t_per_s = reach * LONGER;
+        let (start, along) = (o + d * t, d * t_per_s);
+        (start.is_finite() && along.is_finite() && t_per_s > 0.0).then_some(Segment {
+            start,
+            along,
+            t,
+            t_per_s,
+        })
+    }
+
     /// Reports the crossings along the ray to the visitor, until it stops.
     fn walk(
         &self,
@@ -219,17 +254,39 @@ impl Polynomial {
         question: &Question,
         visit: &mut dyn FnMut(Event) -> ControlFlow<()>,
     ) {
-        let Some(segment) = self.segment(ray, question.on_surface) else {
-            return;
-        };
+        if let Some(segment) = self.segment(ray, question.on_surface) {
+            self.walk_segment(&segment, question, visit);
+        }
+    }
+
+    /// The same for a stretch of the ray: no coordinate of its points is much larger than the length of the stretch. Crossings before and
+    /// behind it may be left out, and those within have the same bits whatever the question's range is.
+    pub(crate) fn walk_within(
+        &self,
+        ray: &Ray,
+        stretch: Interval,
+        question: &Question,
+        visit: &mut dyn FnMut(Event) -> ControlFlow<()>,
+    ) {
+        if let Some(segment) = self.segment_within(ray, stretch, question.on_surface) {
+            self.walk_segment(&segment, question, visit);
+        }
+    }
+
+    fn walk_segment(
+        &self,
+        segment: &Segment,
+        question: &Question,
+        visit: &mut dyn FnMut(Event) -> ControlFlow<()>,
+    ) {
         // The result only matters while visiting.
         let _ = match self.degree() {
-            0..=3 => self.walk_line::<4>(&segment, question, visit),
-            4 => self.walk_line::<5>(&segment, question, visit),
-            5..=6 => self.walk_line::<7>(&segment, question, visit),
-            7..=12 => self.walk_line::<13>(&segment, question, visit),
-            13..=24 => self.walk_line::<25>(&segment, question, visit),
-            _ => self.walk_line::<36>(&segment, question, visit),
+            0..=3 => self.walk_line::<4>(segment, question, visit),
+            4 => self.walk_line::<5>(segment, question, visit),
+            5..=6 => self.walk_line::<7>(segment, question, visit),
+            7..=12 => self.walk_line::<13>(segment, question, visit),
+            13..=24 => self.walk_line::<25>(segment, question, visit),
+            _ => self.walk_line::<36>(segment, question, visit),
         };
     }
 

@@ -1,5 +1,6 @@
 //! Surfaces where a function of space has a given value.
 
+mod decision;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -10,10 +11,12 @@ use super::container::Container;
 use super::octree::{Cell, Content, Octree, Visitor as _};
 use super::slopes::Slopes;
 use super::workspace::with_workspace;
+use crate::algebraic::{self, Question};
 use crate::{
     Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
     SurfacePoint,
 };
+use decision::Decision;
 use search::{Course, Search, least_value, side};
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
@@ -58,7 +61,8 @@ impl Default for IsosurfaceOptions {
 /// does not change, so there are no holes and no gradient has to be guessed, however steep the function is. There are two exceptions:
 /// functions that call patterns or pigments have no bounds, so [`IsosurfaceOptions::max_gradient`] is trusted, as in POV-Ray; and if it is
 /// stated for a sum over octaves of noise, whose bounds take long, it is trusted unless measured slopes contradict it. An octree, whose cells are examined when a ray first meets them, stores where the surface may be at all; it depends on the
-/// function alone, so it does not change the picture.
+/// function alone, so it does not change the picture. Where the signs of polynomials decide ([`Function::region_below`]), they are solved
+/// along the ray instead.
 ///
 /// Facets: 0 is the function's surface, 1 and up are the facets of the container. NaN counts as outside. There are no texture
 /// coordinates.
@@ -75,6 +79,8 @@ pub struct Isosurface {
     trusts_gradient: OnceLock<bool>,
     /// Of which arguments rates of change can be known.
     rates: Rates,
+    /// The polynomials that decide instead, once a ray has asked.
+    decision: OnceLock<Option<Decision>>,
     octree: Octree,
     /// How far cells are widened when they are examined.
     cell_pad: DVec3,
@@ -151,6 +157,7 @@ impl Isosurface {
             is_bounded,
             trusts_gradient: OnceLock::new(),
             rates,
+            decision: OnceLock::new(),
             octree: Octree::new(cube_around(bounds), LEVELS),
             cell_pad,
             reach: bounds.padded(cell_pad),
@@ -331,10 +338,30 @@ impl Isosurface {
         let needed = Interval::new(0.0, end - start)
             .intersection(Interval::new(range.min - start, range.max - start));
         let skips = needed.min > 0.0 && from != Some(SURFACE);
+        let enter = passage.enter.filter(|enter| enter.hit.t == start && !skips);
+        let decision = self.decision.get_or_init(|| self.find_decision(workspace));
+        if let Some(decision) = decision {
+            let stretch = Interval::new(start, end);
+            let question = Question {
+                range: Interval::new(
+                    if skips { range.min } else { start },
+                    if range.max < end { range.max } else { end },
+                ),
+                on_surface: from == Some(SURFACE),
+                errors: false,
+            };
+            return self.solve(
+                decision,
+                ray,
+                (stretch, enter, passage.exit),
+                &question,
+                visit,
+            );
+        }
         let mut course = Course {
             search: self.search(ray, start, rough, workspace),
             length: end - start,
-            enter: passage.enter.filter(|enter| enter.hit.t == start && !skips),
+            enter,
             last: if skips { needed.min } else { 0.0 },
             value: None,
             inside: None,
@@ -355,6 +382,56 @@ impl Isosurface {
             visit(Event::Crossing(self.cap(passage.exit, Side::Exit)))?;
         }
         ControlFlow::Continue(())
+    }
+
+    /// As [`Isosurface::walk`], where polynomials decide.
+    fn solve(
+        &self,
+        decision: &Decision,
+        ray: &Ray,
+        (stretch, enter, exit): (Interval, Option<Crossing>, Crossing),
+        question: &Question,
+        visit: &mut impl FnMut(Event) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let (mut inside, mut flow) = (false, ControlFlow::Continue(()));
+        decision.walk(ray, stretch, question, &mut |event| {
+            flow = match event {
+                algebraic::Event::Start { inside: is_inside } => {
+                    inside = is_inside;
+                    self.begin(enter, inside, visit)
+                }
+                // The container ends before it.
+                algebraic::Event::Crossing { t, .. } if t >= stretch.max => {
+                    return ControlFlow::Break(());
+                }
+                algebraic::Event::Crossing { t, enters, .. } => {
+                    inside = enters;
+                    let side = if enters { Side::Enter } else { Side::Exit };
+                    let hit = PrimHit::simple(t, SURFACE.facet);
+                    visit(Event::Crossing(Crossing::new(hit, 0.0, side)))
+                }
+            };
+            flow
+        });
+        flow?;
+        if inside {
+            visit(Event::Crossing(self.cap(exit, Side::Exit)))?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Reports where a ray begins, in the container or on it.
+    fn begin(
+        &self,
+        enter: Option<Crossing>,
+        inside: bool,
+        visit: &mut impl FnMut(Event) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        match enter {
+            Some(enter) if inside => visit(Event::Crossing(self.cap(enter, Side::Enter))),
+            Some(_) => ControlFlow::Continue(()),
+            None => visit(Event::Start { inside }),
+        }
     }
 
     // Inline: what is searched with would be copied.

@@ -268,14 +268,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
             }
         };
         self.inside = Some(inside);
-        match self.enter {
-            Some(enter) if inside => {
-                let cap = search.surface.cap(enter, Side::Enter);
-                (self.visit)(Event::Crossing(cap))
-            }
-            Some(_) => ControlFlow::Continue(()),
-            None => (self.visit)(Event::Start { inside }),
-        }
+        search.surface.begin(self.enter, inside, self.visit)
     }
 
     fn part(&mut self, enter: f64, exit: f64, cell: &Cell<'_>) -> ControlFlow<()> {

@@ -17,6 +17,37 @@ fn ball() -> Function {
     function(|g, xyz| g.norm2(&xyz))
 }
 
+/// A ball whose value is its distance from the center, half out of the container.
+fn distance() -> Function {
+    function(|g, xyz| g.length(&xyz))
+}
+
+/// `| x² + y² + z² - 1 |`
+fn shell() -> Function {
+    function(|g, xyz| {
+        let square = g.norm2(&xyz);
+        let off = g.offset(square, -1.0);
+        g.abs(off)
+    })
+}
+
+/// The smaller one of the distance from an axis and of a paraboloid's polynomial.
+fn union() -> Function {
+    function(|g, [x, y, z]| {
+        let tube = g.length(&[x, y]);
+        let bowl = g.norm2(&[x, z]);
+        let (tube, bowl) = (g.scaled(tube, 2.0), g.add(bowl, y));
+        g.min(&[tube, bowl])
+    })
+}
+
+fn heart() -> Function {
+    function(|g, [x, y, z]| {
+        let one = g.constant(1.0);
+        g.internal("f_heart", &[x, y, z, one], NoiseGenerator::default())
+    })
+}
+
 fn gyroid() -> Function {
     function(|g, [x, y, z]| {
         let scaled = [x, y, z].map(|c| g.scaled(c, 4.0));
@@ -76,6 +107,9 @@ fn iso(function: Function, container: Container, threshold: f64) -> Isosurface {
 
 crate::primitive_tests!(whole, || iso(ball(), cube(1.5), 1.0));
 crate::primitive_tests!(cut, || iso(ball(), cube(0.8), 1.0));
+crate::primitive_tests!(shell_of_polynomials, || iso(shell(), cube(1.0), 0.2));
+crate::primitive_tests!(union_of_polynomials, || iso(union(), cube(1.5), 1.0));
+crate::primitive_tests!(degree_six, || iso(heart(), cube(1.3), -0.1));
 crate::primitive_tests!(in_a_sphere, || iso(
     gyroid(),
     Container::Sphere(Sphere::new(DVec3::new(0.1, 0.0, 0.2), 1.0)),
@@ -153,6 +187,75 @@ fn rays_from_within_know_the_side_on_which_they_start() {
         surface.crossings(&ray, Interval::FORWARD, None, &mut scratch, &mut out);
         assert_eq!(out.inside_at_start, from.length() < 1.0, "{from}");
     }
+}
+
+/// The same surface, searched although polynomials decide.
+fn searched(surface: &Isosurface) -> Isosurface {
+    let (function, container) = (surface.function.clone(), surface.container.clone());
+    let mut other = Isosurface::try_new(function, container, surface.options.clone()).unwrap();
+    other.decision = OnceLock::from(None);
+    other
+}
+
+fn decides(surface: &Isosurface) -> bool {
+    with_workspace(|workspace| surface.find_decision(workspace).is_some())
+}
+
+#[test]
+fn polynomials_are_solved_where_a_search_finds_crossings() {
+    let turned_out = function(|g, xyz| {
+        let square = g.norm2(&xyz);
+        g.neg(square)
+    });
+    for (function, container, threshold) in [
+        (ball(), cube(0.8), 1.0),
+        (distance(), cube(0.9), 1.0),
+        (turned_out, cube(1.1), -1.0),
+        (shell(), cube(1.0), 0.2),
+        (union(), cube(1.5), 1.0),
+        (heart(), cube(1.3), -0.1),
+    ] {
+        let solved = iso(function, container, threshold);
+        assert!(decides(&solved), "{solved:?}");
+        let searched = searched(&solved);
+        let mut random = Random::new(11);
+        let (mut crossings, mut others) = (0, 0);
+        for _ in 0..2000 {
+            let (from, to) = (random.cube() * 3.0, random.cube());
+            let (ours, theirs) = [&solved, &searched]
+                .map(|surface| hits(surface, from, to - from))
+                .into();
+            crossings += theirs.len();
+            let near = |(a, b): (&(f64, u32), &(f64, u32))| a.1 == b.1 && (a.0 - b.0).abs() <= 1e-7;
+            // Lines that touch the surface.
+            let agrees = ours.len() == theirs.len() && ours.iter().zip(&theirs).all(near);
+            others += u32::from(!agrees);
+        }
+        assert!(
+            crossings > 1000 && others <= 4,
+            "{crossings} {others} {solved:?}"
+        );
+    }
+}
+
+#[test]
+fn polynomials_do_not_decide_where_they_are_less_exact() {
+    // Far from the center of the container the ball is as small as the rounding errors of the powers.
+    let power = |far: f64| {
+        function(move |g, [x, y, z]| {
+            let x = g.offset(x, -far);
+            let square = g.norm2(&[x, y, z]);
+            g.powi(square, 6)
+        })
+    };
+    assert!(decides(&iso(power(0.0), cube(1.5), 1.0)));
+    assert!(!decides(&iso(power(100.0), cube(200.0), 1.0)));
+    // Nothing is known of what lines do not meet.
+    assert!(!decides(&iso(ball(), cube(1.0), 4.0)));
+    // A root of negative numbers.
+    let root = function(|g, [x, ..]| g.sqrt(x));
+    assert!(!decides(&iso(root, cube(1.0), 0.5)));
+    assert!(!decides(&iso(gyroid(), cube(1.0), 0.1)));
 }
 
 #[test]

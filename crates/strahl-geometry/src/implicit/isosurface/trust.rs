@@ -58,7 +58,7 @@ impl Isosurface {
 }
 
 /// Places that fill a box evenly: a sequence of low discrepancy (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
-fn place(bounds: &Aabb, number: u32) -> DVec3 {
+pub(super) fn place(bounds: &Aabb, number: u32) -> DVec3 {
     const STEP: DVec3 = DVec3::new(
         0.819_172_513_396_164_5,
         0.671_043_606_703_789_3,
@@ -69,7 +69,7 @@ fn place(bounds: &Aabb, number: u32) -> DVec3 {
 }
 
 /// Along the axes and the diagonals in turn.
-fn direction(number: u32) -> DVec3 {
+pub(super) fn direction(number: u32) -> DVec3 {
     match number % 7 {
         axis @ 0..3 => DVec3::AXES[axis as usize],
         3 => DVec3::new(1.0, 1.0, 1.0),
