@@ -10,6 +10,7 @@ mod rules;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod view;
 
 use super::elements::{self, ElementTree, Elements, Front};
 use super::winding::{Pass, Winding};
@@ -56,7 +57,7 @@ impl Subdivision {
     /// # Errors
     /// There are no faces, or their number of corners is not as [`SubdivisionData`] says; an index has no vertex; a vertex is not finite or
     /// beyond 1e70; a face has a vertex twice; three faces meet at an edge, or two that turn different sides to the front;
-    /// more than 1000 faces meet at a vertex; a crease is no edge; a sharpness is negative; all vertices lie on a line.
+    /// more than 10000 faces meet at a vertex; a crease is no edge; a sharpness is negative; all vertices lie on a line.
     pub fn try_new(data: &SubdivisionData) -> Result<Self, GeometryError> {
         Ok(Self::of(Cage::try_new(data)?, false))
     }

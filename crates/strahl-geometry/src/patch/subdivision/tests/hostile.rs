@@ -29,7 +29,7 @@ fn bad_meshes_are_refused_with_the_reason() {
             Box::new(|d| (d.sizes, d.indices) = (vec![], vec![])),
         ),
         (
-            "from 3 to 1000, found 2",
+            "from 3 to 10000, found 2",
             Box::new(|d| {
                 d.sizes.push(2);
                 d.indices.extend([0, 1]);
