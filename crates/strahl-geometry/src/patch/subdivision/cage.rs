@@ -70,17 +70,10 @@ impl Cage {
     /// Finds the depths of all vertices, and those with many edges.
     fn find_vertices(&mut self) -> Result<(), GeometryError> {
         let scheme = self.scheme();
-        let mut is_seen = vec![false; self.data.indices.len()];
+        let fans = self.find_fans()?;
         let mut crowded = vec![];
-        for h in 0..self.data.indices.len() as u32 {
-            // Once for each vertex, unless separate parts of the mesh touch there.
-            if is_seen[h as usize] {
-                continue;
-            }
+        for h in fans {
             let around = self.sides.around(h)?;
-            for side in around.iter().flatten() {
-                is_seen[*side as usize] = true;
-            }
             let vertex = self.data.indices[h as usize] as usize;
             let depth = self.fan(h, &around).finished(scheme).depth as u8;
             self.depths[vertex] = self.depths[vertex].max(depth);
@@ -99,6 +92,28 @@ impl Cage {
             }
         }
         Ok(())
+    }
+
+    /// The first half-edge of all faces around each vertex. Where separate fans of faces touch in a vertex, it becomes a sharp corner of each,
+    /// which stays where it is, as in OpenSubdiv: the limits would come apart otherwise.
+    fn find_fans(&mut self) -> Result<Vec<u32>, GeometryError> {
+        let mut is_seen = vec![false; self.data.indices.len()];
+        let mut has_fan = vec![false; self.data.points.len()];
+        let mut fans = vec![];
+        for h in 0..self.data.indices.len() as u32 {
+            if is_seen[h as usize] {
+                continue;
+            }
+            fans.push(h);
+            for side in self.sides.around(h)?.iter().flatten() {
+                is_seen[*side as usize] = true;
+            }
+            let vertex = self.data.indices[h as usize];
+            if std::mem::replace(&mut has_fan[vertex as usize], true) {
+                self.corners.insert(vertex, f64::INFINITY);
+            }
+        }
+        Ok(fans)
     }
 
     fn find_wide_faces(&mut self) {

@@ -34,7 +34,8 @@ pub use data::{SubdivisionData, SubdivisionScheme};
 /// limit does: both are closer than `2^-28` of the face to each other. Neighbours have their borders in common to the last bit, so
 /// that a ray through a border meets exactly one of them.
 ///
-/// Edges may be creases of any sharpness, vertices may be corners. Edges with one face are the border, which is a cubic
+/// Edges may be creases of any sharpness, vertices may be corners. A vertex in which faces touch that have no edge there in common is a sharp
+/// corner of all of them. Edges with one face are the border, which is a cubic
 /// B-spline curve of its vertices. A mesh without such edges is a solid: a point is inside if the surface winds around it. Open ones have
 /// no inside; their front is the side from which the faces run counter-clockwise.
 ///

@@ -143,6 +143,48 @@ fn ugly_meshes_are_met() {
     }
 }
 
+/// Faces that touch in a vertex only stay together there, as in OpenSubdiv: it is a corner of them. Their limits came apart.
+#[test]
+fn faces_that_touch_in_a_vertex_stay_together() {
+    let mut random = Random::new(6);
+    for scheme in [CatmullClark, Loop] {
+        // Two closed meshes that have a vertex in common, and two triangles, like a bow tie.
+        let one = tetrahedron(scheme);
+        let mut touching = one.clone();
+        touching.points.extend(
+            one.points
+                .iter()
+                .skip(1)
+                .map(|p| *p * -1.0 + one.points[0] * 2.0),
+        );
+        let other = one.indices.iter().map(|i| if *i == 0 { 0 } else { i + 3 });
+        touching.indices.extend(other);
+        touching.sizes.extend(&one.sizes);
+        // The point mirror turns its faces.
+        for face in touching.indices[12..].chunks_mut(3) {
+            face.reverse();
+        }
+        let points = (0..5).map(|_| random.cube()).collect();
+        let bow = SubdivisionData::new(scheme, points, [[0, 1, 2], [0, 3, 4]]);
+        for data in [touching, bow] {
+            let surface = surface(&data);
+            let mut met = vec![];
+            for element in 0..surface.elements() {
+                let [u, v] = [0.0, 1.0];
+                for uv in [[u, u], [v, u], [u, v]] {
+                    let ([point, ..], _) = jet(&surface, element, uv);
+                    if (point - data.points[0]).length() < 1e-13 {
+                        met.push(element);
+                        break;
+                    }
+                }
+            }
+            let faces = data.indices.iter().filter(|i| **i == 0).count();
+            assert_eq!(met.len(), faces, "{scheme:?}: {met:?}");
+        }
+    }
+}
+
 /// A torus of 10^5 faces is there within seconds and 100 MB, and grows by what rays see of it.
 #[test]
 fn a_hundred_thousand_faces_are_no_trouble() {
