@@ -118,7 +118,7 @@ def subdivision(
 ) -> Object:
     """The limit of a mesh that is divided and smoothed without end, by the ``scheme`` "catmull-clark" or "loop". Rays meet the limit itself, without triangles.
 
-    ``points`` are (n, 3). ``faces`` are rows of numbers of points, counter-clockwise seen from the front: an array (m, k), or a list of faces of 3 to 1000 corners; with "loop"
+    ``points`` are (n, 3). ``faces`` are rows of numbers of points, counter-clockwise seen from the front: an array (m, k), or a list of faces of 3 to 10000 corners; with "loop"
     all of them are triangles. ``creases`` are pairs of a line of points along edges and its sharpness, ``corners`` pairs of a point and its sharpness: so many levels of
     division treat them as sharp, 10 and more for ever. ``uv`` are texture coordinates (number of all corners, 2), those of the faces' corners one after the other.
 

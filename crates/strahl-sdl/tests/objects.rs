@@ -329,6 +329,52 @@ fn nurbs_are_trimmed_by_polygons_and_curves() {
     );
 }
 
+/// The box of a trimmed surface is that of what its loops leave.
+#[test]
+fn extents_of_nurbs_are_those_of_what_is_left() {
+    let extents = |text: &str| {
+        let text = format!(
+            "#declare N = nurbs {{ {FLAT_NURBS} {text} }} #declare A = min_extent(N); #declare B = max_extent(N);
+             sphere {{ 0, B.x - A.x }} sphere {{ 0, B.y - A.y }}"
+        );
+        let (read, _) = scene(&text);
+        let widths = read.objects.0.iter().map(|object| match &object.kind {
+            ObjectKind::Shape(Shape::Sphere(sphere)) => sphere.radius(),
+            other => panic!("{other:?}"),
+        });
+        widths.collect::<Vec<_>>()
+    };
+    let square = "{ <0.25, 0.25>, <0.75, 0.25>, <0.75, 0.75>, <0.25, 0.75> }";
+    let whole = extents("");
+    for (part, left) in whole.iter().zip(extents(&format!("trim {square}"))) {
+        assert!((left / part - 0.5).abs() < 0.2, "{part} {left}");
+    }
+    for (part, left) in whole.iter().zip(extents(&format!("hole {square}"))) {
+        assert!((left / part - 1.0).abs() < 1e-5, "{part} {left}");
+    }
+}
+
+/// A face of thousands of corners is read in time.
+#[test]
+fn wide_faces_of_subdivision_surfaces_are_read() {
+    let count = 4000;
+    let corners: Vec<String> = (0..count).map(|i| i.to_string()).collect();
+    let point = |i: u32| {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+        format!("<{}, 0, {}>", angle.cos(), angle.sin())
+    };
+    let points: Vec<String> = (0..count).map(point).collect();
+    let text = format!(
+        "subdivision {{ points {{ {} }} face {{ {} }} }}",
+        points.join(", "),
+        corners.join(", ")
+    );
+    let Shape::Subdivision(surface) = shape(&text) else {
+        panic!("no subdivision surface");
+    };
+    assert_eq!(surface.elements(), count);
+}
+
 #[test]
 fn mistakes_in_nurbs_are_explained() {
     for (text, expected) in [
@@ -572,7 +618,7 @@ fn mistakes_in_subdivision_surfaces_are_explained() {
         ),
         (
             "points { 0, x, y } face { 0, 1 }",
-            "from 3 to 1000, found 2",
+            "from 3 to 10000, found 2",
         ),
         (
             "points { 0, x, y } face { 0, 1, 1 }",

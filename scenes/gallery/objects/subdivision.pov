@@ -6,7 +6,9 @@
 // points in the faces around, and `E` that of the middles of the edges. On a crease the points are those of a cubic B-spline curve: the middle of
 // the edge, and `(A + 6 P + B) / 8` between the neighbours `A` and `B`.
 //
-// Limits: two faces meet at an edge at most; a face has 1000 corners at most, a point 1000 faces. The limit is exact where four faces meet at each
+// Faces that touch in a point and have no edge there in common stay together: the point is a corner of them all, as in OpenSubdiv.
+//
+// Limits: two faces meet at an edge at most; a face has 10,000 corners at most, a point 10,000 faces. The limit is exact where four faces meet at each
 // point; around other points the last patch, 2^-30 of a face wide, is closer to it than 2^-28 of a face. A ray nearer to the silhouette than
 // 10^-7 of the size may miss both hits there. Meshes with a border have no inside.
 //

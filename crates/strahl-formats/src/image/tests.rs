@@ -695,6 +695,9 @@ fn damaged_textures_are_errors() {
         assert!(matches!(error, ImageError::Decode { .. }), "{error}");
         assert!(error.to_string().contains(name));
     }
+    let zip = decode_texture(b"PK\x03\x04\x14\0", "a.png", TextureUse::Color).unwrap_err();
+    let expected = "the texture `a.png` cannot be decoded: it is a ZIP archive; ";
+    assert!(zip.to_string().starts_with(expected), "{zip}");
     let error = read_texture("absent/texture.png", TextureUse::Color).unwrap_err();
     assert!(matches!(error, ImageError::Read { .. }), "{error}");
 }

@@ -10,6 +10,7 @@ use ::image::{DynamicImage, ImageDecoder, ImageFormat as FileFormat, ImageReader
 use strahl_shade::image_texture::{ColorSpace, TexelChannels, TexelData, TextureImage};
 
 use super::{ImageError, exr};
+use crate::input::kind::{Kind, kind};
 
 /// The most texels of a texture, 2^30.
 pub const MAX_TEXELS: u64 = 1 << 30;
@@ -78,6 +79,9 @@ pub(super) fn open_picture<'a>(
         .with_guessed_format()
         .map_err(|error| decode_error(name, error))?;
     if reader.format().is_none() {
+        if let Some(Kind { what, .. }) = kind(bytes) {
+            return Err(decode_error(name, format!("it is {what}")));
+        }
         let format = FileFormat::from_path(name).map_err(|_| {
             decode_error(
                 name,

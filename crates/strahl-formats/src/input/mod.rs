@@ -2,6 +2,7 @@
 
 pub(crate) mod ahead;
 pub(crate) mod bytes;
+pub(crate) mod kind;
 pub(crate) mod report;
 pub(crate) mod text;
 pub(crate) mod textures;

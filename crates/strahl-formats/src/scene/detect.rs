@@ -1,3 +1,4 @@
+use crate::input::kind::{Advice, Kind, kind};
 use crate::input::text::without_mark;
 use crate::input::{Fallible, Input, Report};
 use std::path::Path;
@@ -168,6 +169,10 @@ pub(super) fn of_file(path: &Path, bytes: &[u8]) -> Fallible<SceneFormat> {
     let by_name = ending.as_deref().and_then(SceneFormat::of_extension);
     by_name.or_else(|| SceneFormat::sniff(bytes)).ok_or_else(|| {
         let shown = path.display();
+        if let Some(Kind { what, advice }) = kind(bytes) {
+            let problem = Diagnostic::error(format!("`{shown}` is {what}, not a scene"));
+            return Box::new(hinted(problem, advice));
+        }
         let message = match ending {
             Some(ending) => format!("`{shown}`: unknown ending `.{ending}`, and the content does not show its format"),
             None => format!("`{shown}`: the name has no ending, and the content does not show its format"),
@@ -175,6 +180,27 @@ pub(super) fn of_file(path: &Path, bytes: &[u8]) -> Fallible<SceneFormat> {
         let hint = format!("name the format with `--scene-format`; the formats are {}", names());
         Box::new(Diagnostic::error(message).hint(hint))
     })
+}
+
+/// The error of a file that is not of this format at all, but of another kind that its first bytes show.
+pub(super) fn mistaken(bytes: &[u8], name: &str, format: SceneFormat) -> Option<Diagnostic> {
+    let Kind { what, advice } = kind(bytes)?;
+    if matches!(advice, Advice::Scene(own) if own == format.name()) {
+        return None;
+    }
+    let expected = match format {
+        SceneFormat::Gltf => "glTF".into(),
+        other => other.name().to_ascii_uppercase(),
+    };
+    let problem = Diagnostic::error(format!("`{name}` is {what}, and was read as {expected}"));
+    Some(hinted(problem, advice))
+}
+
+fn hinted(problem: Diagnostic, advice: Advice) -> Diagnostic {
+    match advice.hint() {
+        Some(hint) => problem.hint(hint),
+        None => problem,
+    }
 }
 
 /// The first word of the first line that is neither empty nor a comment, and how many words the line has.

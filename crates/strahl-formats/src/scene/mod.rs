@@ -81,6 +81,12 @@ fn read(bytes: &[u8], name: &str, format: SceneFormat, folder: Option<&Path>) ->
     if bytes.is_empty() {
         return Loaded::failed(Diagnostic::error(format!("`{name}` is empty")));
     }
+    let mistaken = detect::mistaken(bytes, name, format);
+    // A binary STL file may begin with anything, so it is mistaken only if it can't be read.
+    let may_begin_so = format == SceneFormat::Stl;
+    if let Some(problem) = mistaken.clone().filter(|_| !may_begin_so) {
+        return Loaded::failed(problem);
+    }
     let mut report = Report::default();
     let folder = folder.map(Folder::new);
     let input = Input {
@@ -90,6 +96,9 @@ fn read(bytes: &[u8], name: &str, format: SceneFormat, folder: Option<&Path>) ->
     };
     let scene = format.info().map(|info| (info.read)(&input, &mut report));
     let (failed, diagnostics) = report.finish();
+    if let Some(problem) = mistaken.filter(|_| failed) {
+        return Loaded::failed(problem);
+    }
     Loaded {
         scene: scene.filter(|_| !failed),
         diagnostics,

@@ -63,6 +63,52 @@ fn contents_show_their_format() {
 }
 
 #[test]
+fn files_of_other_kinds_are_called_what_they_are() {
+    let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
+    let gltf = b"glTF\x02\0\0\0\x0c\0\0\0";
+    for (format, shown) in [
+        (SceneFormat::Nff, "NFF"),
+        (SceneFormat::Obj, "OBJ"),
+        (SceneFormat::Ply, "PLY"),
+        (SceneFormat::Stl, "STL"),
+        (SceneFormat::Gltf, "glTF"),
+    ] {
+        let message = |bytes: &[u8]| only_message(&load_bytes(bytes, "a.x", format, None));
+        let expected = format!("error: `a.x` is a PNG picture, and was read as {shown}");
+        assert_eq!(message(png), expected);
+        let zip = message(b"PK\x03\x04\x14\0\0\0");
+        assert!(zip.starts_with("error: `a.x` is a ZIP archive, "), "{zip}");
+        assert!(zip.ends_with("= help: unpack it first"), "{zip}");
+        if format != SceneFormat::Gltf {
+            let other = message(gltf);
+            assert!(other.contains("is a binary glTF file, "), "{other}");
+            assert!(other.contains("`--scene-format gltf`"), "{other}");
+        }
+    }
+    // Its own kind is no mistake.
+    let own = load_bytes(&gltf[..], "a.glb", SceneFormat::Gltf, None);
+    assert!(only_message(&own).contains("JSON"));
+    // Nor is a binary STL file whose header, which is free, begins like a picture.
+    let mut stl = vec![0; 84 + 50];
+    stl[..6].copy_from_slice(b"GIF89a");
+    stl[80] = 1;
+    for (place, value) in [(96 + 12, 1.0_f32), (96 + 28, 1.0)] {
+        stl[place..place + 4].copy_from_slice(&value.to_le_bytes());
+    }
+    let read = load_bytes(stl, "a.stl", SceneFormat::Stl, None);
+    assert_eq!(read.scene.expect("a mesh").objects.0.len(), 1);
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.jpg");
+    std::fs::write(&path, b"\xff\xd8\xff\xe0").expect("written");
+    let unknown = only_message(&load_path(&path, None));
+    assert!(
+        unknown.ends_with("a.jpg` is a JPEG picture, not a scene"),
+        "{unknown}"
+    );
+}
+
+#[test]
 fn a_byte_order_mark_is_no_part_of_a_text() {
     let folder = tempfile::tempdir().expect("a folder");
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\

@@ -1,6 +1,6 @@
 //! The description of a NURBS surface, its checks, and its division into Bezier patches.
 
-use super::part::{Part, Patch};
+use super::part::{Part, Patch, WHOLE};
 use super::spline::{Knots, Names, elevated, even};
 use super::{check_points, check_weights};
 use crate::GeometryError;
@@ -236,6 +236,7 @@ impl NurbsData {
                     from: [breaks[0][a], breaks[1][b]],
                     to: [breaks[0][a + 1], breaks[1][b + 1]],
                     is_trimmed: false,
+                    kept: Some(WHOLE),
                 });
             }
         }

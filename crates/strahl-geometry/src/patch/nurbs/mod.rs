@@ -3,6 +3,7 @@
 mod brep;
 mod closed;
 mod data;
+mod kept;
 mod part;
 mod spline;
 #[cfg(test)]
@@ -38,6 +39,7 @@ pub use trim::{NurbsCurve, TrimLoop};
 /// of Bezier patches, which have their borders in common to the last bit, so that a ray through a border meets exactly
 /// one of them. So do whole surfaces with a common border: the same control points, weights and knots there, and the same larger
 /// degree.
+/// The box of a trimmed surface is that of what the loops leave: it has all of it within, and is close.
 /// At trimmed borders a point is there or not by the exact side of its rounded parameters; two trimmed surfaces that meet
 /// along curves are as close there as their curves are.
 ///
@@ -48,9 +50,12 @@ pub use trim::{NurbsCurve, TrimLoop};
 /// beside them.
 #[derive(Debug)]
 pub struct Nurbs {
+    /// First those of which something is left, then those beside a curve, which are there for solids of several surfaces.
     parts: Vec<Part>,
-    /// Over the parts.
+    /// Over what is left of the parts.
     tree: ElementTree,
+    /// A box around the parts as they were before trimming: it tells how large rounding errors are.
+    whole: Aabb,
     trimming: Option<Arc<Region>>,
     front: Front,
 }
@@ -86,7 +91,7 @@ impl Nurbs {
             trim(&mut patches, &region);
             trimming = Some(Arc::new(region));
         }
-        if patches.parts.is_empty() {
+        if patches.parts.iter().all(|part| part.kept.is_none()) {
             return Err(GeometryError::Degenerate {
                 what: "NURBS surface",
                 why: "its trimming curves leave nothing of it",
@@ -97,15 +102,18 @@ impl Nurbs {
     }
 
     fn of(
-        parts: Vec<Part>,
+        mut parts: Vec<Part>,
         trimming: Option<Arc<Region>>,
         is_flipped: bool,
         is_closed: bool,
     ) -> Self {
-        let boxes: Vec<_> = parts.iter().map(|part| part.patch.bounds()).collect();
+        parts.sort_by_key(|part| part.kept.is_none());
+        let boxes: Vec<_> = parts.iter().map_while(Part::bounds).collect();
+        let whole = parts.iter().map(|part| part.patch.bounds());
         let mut surface = Self {
-            parts,
             tree: ElementTree::new(&boxes),
+            whole: whole.fold(Aabb::EMPTY, |all, own| all.union(&own)),
+            parts,
             trimming,
             front: Front {
                 is_flipped,
@@ -130,7 +138,7 @@ impl Nurbs {
     }
 }
 
-/// Leaves out the patches that the loops cut away, and marks those through which curves run.
+/// Leaves out the patches that the loops cut away, marks those near which curves run, and finds what is left of them.
 fn trim(patches: &mut data::Patches, region: &Region) {
     let [across, up] = [0, 1].map(|k| patches.breaks[k].len() - 1);
     let mut work = 0;
@@ -159,6 +167,7 @@ fn trim(patches: &mut data::Patches, region: &Region) {
             }
         }
     }
+    kept::shrink(patches, region);
     patches
         .parts
         .retain(|part| part.is_trimmed || region.contains(part.place([0.5, 0.5])));
@@ -345,7 +354,7 @@ impl Primitive for Nurbs {
         let normal = self.front.normal(back.map(|back| -back), ray);
         let [position, by_u, by_v] = jet;
         let size = DVec2::from_array(part.to) - DVec2::from_array(part.from);
-        let error = point_error(position, self.bounds().max_abs(), Self::ROUNDINGS);
+        let error = point_error(position, self.whole.max_abs(), Self::ROUNDINGS);
         elements::textured(
             SurfacePoint::bare(position, error, normal),
             DVec2::from_array(part.place(hit.uv)),
@@ -376,7 +385,7 @@ impl Primitive for Nurbs {
             self.front.is_flipped != map.mirrors(),
             self.front.is_closed,
         );
-        let bounds = mapped.bounds();
+        let bounds = mapped.whole;
         if !(bounds.max_abs() <= LARGEST && elements::keeps_its_shape(&bounds)) {
             return None;
         }

@@ -2,13 +2,20 @@
 
 use crate::patch::bezier::{Bezier, is_on_a_line};
 use crate::patch::frame::Frame;
-use crate::patch::hull::{points, project};
+use crate::patch::hull::{self, points, project};
 use crate::patch::net::Curve;
 use crate::patch::newton::Candidate;
 use crate::patch::piece::PatchPlace;
 use crate::patch::search::Keep;
 use std::fmt::Debug;
+use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Transform};
+
+/// A rectangle of parameters: the ends of u, and of v.
+pub(super) type Rectangle = [[f64; 2]; 2];
+
+/// The parameters of a whole patch.
+pub(super) const WHOLE: Rectangle = [[0.0, 1.0]; 2];
 
 /// A ray, and where on the patch it starts, if it leaves it.
 type Start<'a> = (&'a Frame, Option<PatchPlace>);
@@ -16,6 +23,8 @@ type Start<'a> = (&'a Frame, Option<PatchPlace>);
 /// What a surface asks its patches, whose degrees differ.
 pub(super) trait Patch: Debug + Send + Sync {
     fn bounds(&self) -> Aabb;
+    /// A box around the part over a rectangle of the parameters.
+    fn bounds_within(&self, within: Rectangle) -> Aabb;
     /// As [`Bezier::nearest`].
     fn nearest(&self, line: Start<'_>, range: Interval, keep: Keep<'_>) -> Option<Candidate>;
     /// As [`Bezier::any`].
@@ -36,6 +45,26 @@ pub(super) trait Patch: Debug + Send + Sync {
 impl<const K: usize> Patch for Bezier<K> {
     fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    fn bounds_within(&self, within: Rectangle) -> Aabb {
+        if within == WHOLE {
+            return self.bounds;
+        }
+        let mut net = self.net;
+        net.rows = net.rows.map(|row| between(&row, within[0]));
+        for i in 0..K {
+            let column = between(&net.column(i), within[1]);
+            for (row, p) in net.rows.iter_mut().zip(column) {
+                row[i] = p;
+            }
+        }
+        // The rectangle may reach a little beyond the patch, where weights may vanish.
+        if net.points().any(|p| !(p[3] > 0.0)) {
+            return self.bounds;
+        }
+        let noise = DVec3::splat(self.bounds.max_abs() * gamma(64));
+        hull::bounds(&net).padded(noise).intersection(&self.bounds)
     }
 
     fn nearest(&self, line: Start<'_>, range: Interval, keep: Keep<'_>) -> Option<Candidate> {
@@ -125,7 +154,16 @@ fn extended<const K: usize>(curve: Curve<4, K>, [before, after]: [f64; 2]) -> Cu
     longer
 }
 
-/// The curve from its begin to a parameter beyond its end (de Casteljau).
+/// The curve from one parameter to a larger one, which is positive.
+fn between<const K: usize>(curve: &Curve<4, K>, [from, to]: [f64; 2]) -> Curve<4, K> {
+    let mut part = continued(curve, to);
+    part.reverse();
+    part = continued(&part, 1.0 - from / to);
+    part.reverse();
+    part
+}
+
+/// The curve from its begin to a parameter before or beyond its end (de Casteljau).
 fn continued<const K: usize>(curve: &Curve<4, K>, at: f64) -> Curve<4, K> {
     let (mut row, mut out) = (*curve, *curve);
     for (step, place) in out.iter_mut().enumerate().skip(1) {
@@ -145,9 +183,16 @@ pub(super) struct Part {
     pub(super) to: [f64; 2],
     /// Whether a trimming curve runs through it.
     pub(super) is_trimmed: bool,
+    /// The rectangle that trimming leaves at most, in the parameters of the patch; `None` if it leaves nothing.
+    pub(super) kept: Option<Rectangle>,
 }
 
 impl Part {
+    /// A box around what trimming leaves; `None` if it leaves nothing.
+    pub(super) fn bounds(&self) -> Option<Aabb> {
+        self.kept.map(|kept| self.patch.bounds_within(kept))
+    }
+
     /// The same part, whose pieces are made anew.
     pub(super) fn copy(&self) -> Self {
         Self {

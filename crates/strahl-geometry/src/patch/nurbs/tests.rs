@@ -1,4 +1,5 @@
 mod dense;
+mod kept;
 
 use super::*;
 use crate::conformance::Random;

@@ -304,7 +304,8 @@ fn bezier(
     Ok(arcs)
 }
 
-fn split(arc: &[Weighted]) -> [Vec<Weighted>; 2] {
+/// Both halves of a curve of points times their weights, and the weights.
+pub(super) fn split(arc: &[Weighted]) -> [Vec<Weighted>; 2] {
     let mut row = arc.to_vec();
     let (mut left, mut right) = (arc.to_vec(), arc.to_vec());
     let count = arc.len();

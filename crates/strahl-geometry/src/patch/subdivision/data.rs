@@ -24,7 +24,7 @@ pub struct SubdivisionData {
     pub scheme: SubdivisionScheme,
     /// The vertices. Those that no face uses are ignored.
     pub points: Vec<DVec3>,
-    /// How many corners each face has, from 3 to 1000.
+    /// How many corners each face has, from 3 to 10000.
     pub sizes: Vec<u32>,
     /// The vertices of the faces, one face after the other, counter-clockwise seen from the front.
     pub indices: Vec<u32>,
@@ -37,8 +37,9 @@ pub struct SubdivisionData {
     pub uvs: Vec<DVec2>,
 }
 
-/// Faces have at most so many corners, and vertices so many edges: the cost grows with the square.
-const MOST_CORNERS: u32 = 1000;
+/// Faces have at most so many corners, and vertices so many edges. Each takes up to half a megabyte when rays have come
+/// everywhere near it.
+const MOST_CORNERS: u32 = 10_000;
 /// The corners of all faces together.
 const MOST_INDICES: usize = 1 << 28;
 const WHAT: &str = "the mesh of the subdivision surface";
@@ -138,7 +139,7 @@ impl SubdivisionData {
         for (face, size) in self.sizes.iter().enumerate() {
             let expected = match self.scheme {
                 SubdivisionScheme::CatmullClark if (3..=MOST_CORNERS).contains(size) => None,
-                SubdivisionScheme::CatmullClark => Some("from 3 to 1000"),
+                SubdivisionScheme::CatmullClark => Some("from 3 to 10000"),
                 SubdivisionScheme::Loop if *size == 3 => None,
                 SubdivisionScheme::Loop => Some("3 for Loop's scheme"),
             };
@@ -363,7 +364,7 @@ impl Sides {
         let mut at = h;
         let too_many = |count: usize| GeometryError::OutOfRange {
             what: "number of faces at a vertex of the subdivision surface",
-            expected: "at most 1000",
+            expected: "at most 10000",
             found: count as f64,
         };
         while let Some(next) = self.twin(self.previous(at)) {

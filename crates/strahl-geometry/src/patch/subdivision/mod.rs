@@ -10,6 +10,7 @@ mod rules;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod view;
 
 use super::elements::{self, ElementTree, Elements, Front};
 use super::winding::{Pass, Winding};
@@ -33,7 +34,8 @@ pub use data::{SubdivisionData, SubdivisionScheme};
 /// limit does: both are closer than `2^-28` of the face to each other. Neighbours have their borders in common to the last bit, so
 /// that a ray through a border meets exactly one of them.
 ///
-/// Edges may be creases of any sharpness, vertices may be corners. Edges with one face are the border, which is a cubic
+/// Edges may be creases of any sharpness, vertices may be corners. A vertex in which faces touch that have no edge there in common is a sharp
+/// corner of all of them. Edges with one face are the border, which is a cubic
 /// B-spline curve of its vertices. A mesh without such edges is a solid: a point is inside if the surface winds around it. Open ones have
 /// no inside; their front is the side from which the faces run counter-clockwise.
 ///
@@ -56,7 +58,7 @@ impl Subdivision {
     /// # Errors
     /// There are no faces, or their number of corners is not as [`SubdivisionData`] says; an index has no vertex; a vertex is not finite or
     /// beyond 1e70; a face has a vertex twice; three faces meet at an edge, or two that turn different sides to the front;
-    /// more than 1000 faces meet at a vertex; a crease is no edge; a sharpness is negative; all vertices lie on a line.
+    /// more than 10000 faces meet at a vertex; a crease is no edge; a sharpness is negative; all vertices lie on a line.
     pub fn try_new(data: &SubdivisionData) -> Result<Self, GeometryError> {
         Ok(Self::of(Cage::try_new(data)?, false))
     }

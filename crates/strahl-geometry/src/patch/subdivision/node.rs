@@ -110,7 +110,7 @@ pub(super) struct Found {
 impl Leaf {
     /// The patches of a face; `rest` if it is so near to an irregular vertex that they are thin.
     pub(super) fn new(ring: &Ring, rest: Option<Tip>) -> Self {
-        let rest = rest.or_else(|| ring.tip());
+        let rest = rest.or_else(|| ring.tip(None));
         let is_thin = rest.is_some();
         let count = ring.corners.len();
         let divided: Vec<bool> = (0..count).map(|i| ring.is_neighbor_divided(i)).collect();
@@ -311,9 +311,7 @@ impl Node {
         if ring.is_leaf() {
             return Self::Leaf(Leaf::new(&ring, None));
         }
-        let thin = ring
-            .tip()
-            .filter(|tip| tip.width < THIN * ring.hull().max_abs());
+        let thin = ring.tip(Some(THIN * ring.hull().max_abs()));
         let kids = ring.children().into_iter();
         Self::Split(Box::new(Split {
             scheme: ring.scheme,

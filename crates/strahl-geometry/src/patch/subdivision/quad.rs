@@ -17,13 +17,13 @@ pub(super) fn weightless(p: DVec3) -> [f64; 4] {
 /// The border curve along edge `i`. From the other side it is the same, reversed, to the last bit.
 pub(super) fn edge_curve(ring: &Ring, i: usize) -> Curve<4, 4> {
     let (a, b) = (ring.corner(i), ring.corner(i + 1));
-    let inner = if a.spokes[0].sharpness > 0.0 {
+    let inner = if a.spoke(0).sharpness > 0.0 {
         let near = |p: DVec3, q: DVec3| (p * 2.0 + q) / 3.0;
-        [near(a.point, b.point), near(b.point, a.point)]
+        [near(a.point(), b.point()), near(b.point(), a.point())]
     } else {
         let across = |p: DVec3, [left, right]: [DVec3; 2]| (left + right) + p * 4.0;
-        let first = across(a.point, [a.spokes[a.before(0)].point, a.spokes[1].point]);
-        let second = across(b.point, [b.spokes[0].point, b.spokes[b.turn(1, 1)].point]);
+        let first = across(a.point(), [a.spoke_before().point, a.spoke(1).point]);
+        let second = across(b.point(), [b.spoke(0).point, b.spoke(2).point]);
         let near = |p: DVec3, q: DVec3| (p * 2.0 + q) / 18.0;
         [near(first, second), near(second, first)]
     };
@@ -36,7 +36,7 @@ pub(super) fn edge_curve(ring: &Ring, i: usize) -> Curve<4, 4> {
 /// Beside an irregular corner, where faces are so small that it does not matter, the surface is only close: it has the corner's
 /// limit, the neighbours' borders, and is within the hull of the same points.
 pub(super) fn net(ring: &Ring) -> Net<4, 4> {
-    let corner = |i: usize| ring.corner(i).point;
+    let corner = |i: usize| ring.corner(i).point();
     let within = |i: usize| {
         let sides = corner(i + 1) + corner(i + 3);
         weightless(((corner(i) * 4.0 + sides * 2.0) + corner(i + 2)) / 9.0)

@@ -4,8 +4,8 @@
 //! sums are taken in an order that depends on the numbers alone, and neighbours agree to the last bit.
 
 use super::SubdivisionScheme;
-use std::sync::Arc;
-use strahl_math::{DVec3, det};
+use std::sync::{Arc, OnceLock};
+use strahl_math::{Aabb, DVec3, det};
 
 /// Edges and vertices that are at least so sharp stay sharp for ever, as in OpenSubdiv.
 pub(super) const SHARPEST: f64 = 10.0;
@@ -14,6 +14,13 @@ const SHRUNK: f64 = 30.0;
 
 /// What is around the end of a crease shrinks by 2/3 in each round at least, and has no size after so many.
 const ROUNDS: u32 = 100;
+
+/// Faces at a vertex with more edges share one fan, and those of later levels. What they need for themselves must not grow with the
+/// number of edges, or the cost of the vertex grows with its square.
+pub(super) const FEW: usize = 64;
+
+/// No vertex is divided to a deeper level: [`depth`] of a vertex with edges without number.
+pub(super) const DEEPEST: u32 = 50;
 
 /// An edge at a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +65,28 @@ pub(super) struct Fan {
     pub(super) depth: u32,
     pub(super) spokes: Vec<Spoke>,
     pub(super) facets: Vec<Facet>,
+    /// What all faces at a vertex with many edges share; `None` if it has few.
+    shared: Option<Box<Shared>>,
+}
+
+/// What follows from a fan, computed when a face asks for it first.
+#[derive(Clone, Debug, Default)]
+struct Shared {
+    refined: OnceLock<Arc<Fan>>,
+    nearer: OnceLock<Arc<Fan>>,
+    pole: OnceLock<Pole>,
+    hull: OnceLock<Aabb>,
+    carriers: OnceLock<Option<[DVec3; 2]>>,
+}
+
+/// What is the same for all faces at the tip of an irregular vertex.
+#[derive(Clone, Copy, Debug)]
+struct Pole {
+    rule: Rule,
+    /// The largest coordinate of a spoke.
+    size: f64,
+    /// The direction of the normal of a smooth vertex.
+    around: DVec3,
 }
 
 /// The surface about an irregular vertex.
@@ -65,8 +94,6 @@ pub(super) struct Fan {
 pub(super) struct Tip {
     /// The normal, on the side of its first face.
     pub(super) normal: Option<DVec3>,
-    /// How wide the first face is across its longer side.
-    pub(super) width: f64,
 }
 
 /// How a vertex moves.
@@ -134,6 +161,26 @@ pub(super) fn depth(scheme: SubdivisionScheme, valence: u32) -> u32 {
 }
 
 impl Fan {
+    /// A vertex, without what follows from this.
+    pub(super) fn new(
+        point: DVec3,
+        sharpness: f64,
+        spokes: Vec<Spoke>,
+        facets: Vec<Facet>,
+    ) -> Self {
+        Self {
+            point,
+            limit: None,
+            origin: None,
+            age: 0,
+            sharpness,
+            depth: 0,
+            shared: shared(spokes.len()),
+            spokes,
+            facets,
+        }
+    }
+
     /// The index of the spoke so many places after another one.
     pub(super) fn turn(&self, j: usize, places: usize) -> usize {
         (j + places) % self.spokes.len()
@@ -263,25 +310,6 @@ impl Fan {
         }
     }
 
-    /// The spoke `j + 1` or `j - 1` and the one behind it, as seen from the smooth spoke `j`; behind a sharp one the surface
-    /// is continued so that it ends there just as it does.
-    pub(super) fn aside(&self, j: usize, is_after: bool) -> [DVec3; 2] {
-        let step = |j: usize| {
-            if is_after {
-                self.turn(j, 1)
-            } else {
-                self.before(j)
-            }
-        };
-        let side = self.spokes[step(j)];
-        let behind = if side.sharpness > 0.0 {
-            (side.point + self.point) - self.spokes[j].point
-        } else {
-            self.spokes[step(step(j))].point
-        };
-        [side.point, behind]
-    }
-
     /// Whether all faces around the vertex can be regular patches, and if not, when they are small enough.
     fn own_depth(&self, scheme: SubdivisionScheme) -> u32 {
         let (sides, around) = match scheme {
@@ -343,63 +371,106 @@ impl Fan {
 
     /// The same, relative to the vertex.
     fn relative(&self) -> Self {
-        let mut fan = self.clone();
-        for spoke in &mut fan.spokes {
+        let (mut spokes, mut facets) = (self.spokes.clone(), self.facets.clone());
+        for spoke in &mut spokes {
             spoke.point -= self.point;
         }
-        for facet in fan.facets.iter_mut().filter(|f| f.sides != 0) {
+        for facet in facets.iter_mut().filter(|f| f.sides != 0) {
             facet.center -= self.point;
         }
-        Self {
-            point: DVec3::ZERO,
-            ..fan
-        }
+        Self::new(DVec3::ZERO, self.sharpness, spokes, facets)
     }
 
-    /// What is known of the surface about an irregular vertex, from what is around it on this level; `None` if the vertex is regular,
-    /// or its rules still change.
+    /// What is known of the surface about an irregular vertex, on the side of facet `first`, from what is around it on this level; `None`
+    /// if the vertex is regular, or its rules still change, or the facet is not narrower than the limit.
     ///
     /// The spokes are computed relative to the vertex from the level on from which the rules don't change, and doubled on each
     /// level: nothing is lost to cancellation, however near to the vertex they are.
-    pub(super) fn tip(&self, scheme: SubdivisionScheme) -> Option<Tip> {
-        let mut fan = Self::clone(self.origin.as_ref()?);
+    pub(super) fn tip(
+        &self,
+        scheme: SubdivisionScheme,
+        first: usize,
+        limit: Option<f64>,
+    ) -> Option<Tip> {
+        let mut fan = Arc::clone(self.origin.as_ref()?);
         for _ in 0..self.age {
-            fan = fan.divided(scheme).relative();
+            fan = fan.nearer(scheme);
+        }
+        let pole = fan.pole(first);
+        let doubled = 2.0_f64.powi(self.age as i32);
+        // Across the longer side of the facet.
+        let width = fan.cross(first, pole.size).length() * pole.size / doubled;
+        if limit.is_some_and(|limit| width >= limit || width.is_nan()) {
+            return None;
+        }
+        let normal = fan.normal(first, &pole).try_normalize();
+        Some(Tip { normal })
+    }
+
+    /// What is around a vertex at the origin on the next level, twice as large.
+    fn nearer(&self, scheme: SubdivisionScheme) -> Arc<Self> {
+        let make = || {
+            let mut fan = self.divided(scheme).relative();
             fan.spokes.iter_mut().for_each(|s| s.point *= 2.0);
             fan.facets.iter_mut().for_each(|f| f.center *= 2.0);
-        }
-        let size = fan.spokes.iter().fold(0.0, |most: f64, s| {
-            let far = s.point.abs().max_element();
-            if far > most { far } else { most }
-        });
-        let cross = |j: usize| {
-            let [a, b] = [j, fan.turn(j, 1)].map(|j| fan.spokes[j].point / size);
-            a.cross(b)
+            Arc::new(fan)
         };
-        let is_sharp = |j: usize| fan.spokes[j].sharpness > 0.0;
-        let sum = match fan.rule(false) {
-            Rule::Smooth => (0..fan.facets.len()).map(cross).sum(),
+        match &self.shared {
+            Some(shared) => Arc::clone(shared.nearer.get_or_init(make)),
+            None => make(),
+        }
+    }
+
+    fn pole(&self, first: usize) -> Pole {
+        let make = |first: usize| {
+            let size = self.spokes.iter().fold(0.0, |most: f64, s| {
+                let far = s.point.abs().max_element();
+                if far > most { far } else { most }
+            });
+            let rule = self.rule(false);
+            let around = match rule {
+                Rule::Smooth => (0..self.facets.len())
+                    .map(|k| self.cross(self.turn(first, k), size))
+                    .sum(),
+                _ => DVec3::ZERO,
+            };
+            Pole { rule, size, around }
+        };
+        match &self.shared {
+            Some(shared) => *shared.pole.get_or_init(|| make(0)),
+            None => make(first),
+        }
+    }
+
+    /// The normal of facet `j` about a vertex at the origin.
+    fn cross(&self, j: usize, size: f64) -> DVec3 {
+        let [a, b] = [j, self.turn(j, 1)].map(|j| self.spokes[j].point / size);
+        a.cross(b)
+    }
+
+    /// The direction of the normal about a vertex at the origin, on the side of facet `first`.
+    fn normal(&self, first: usize, pole: &Pole) -> DVec3 {
+        let is_sharp = |j: usize| self.spokes[j].sharpness > 0.0;
+        match pole.rule {
+            Rule::Smooth => pole.around,
             Rule::Crease(..) => {
                 // The faces on this side of the crease.
-                let (mut from, mut to) = (0, fan.turn(0, 1));
+                let (mut from, mut to) = (first, self.turn(first, 1));
                 while !is_sharp(from) {
-                    from = fan.before(from);
+                    from = self.before(from);
                 }
                 while !is_sharp(to) {
-                    to = fan.turn(to, 1);
+                    to = self.turn(to, 1);
                 }
-                let count = (to + fan.spokes.len() - from) % fan.spokes.len();
-                (0..count).map(|k| cross(fan.turn(from, k))).sum()
+                let count = (to + self.spokes.len() - from) % self.spokes.len();
+                (0..count)
+                    .map(|k| self.cross(self.turn(from, k), pole.size))
+                    .sum()
             }
-            Rule::Corner if (0..fan.spokes.len()).any(is_sharp) => cross(0),
+            Rule::Corner if (0..self.spokes.len()).any(is_sharp) => self.cross(first, pole.size),
             // About the tip of a cone normals point in all directions.
             Rule::Corner => DVec3::ZERO,
-        };
-        let doubled = 2.0_f64.powi(self.age as i32);
-        Some(Tip {
-            normal: sum.try_normalize(),
-            width: cross(0).length() * size / doubled,
-        })
+        }
     }
 
     /// Where the vertex ends.
@@ -408,8 +479,12 @@ impl Fan {
     }
 
     /// The vertex on the next level, with the new vertices on its edges and the new faces at it.
-    pub(super) fn refined(&self, scheme: SubdivisionScheme) -> Self {
-        self.divided(scheme).finished(scheme)
+    pub(super) fn refined(&self, scheme: SubdivisionScheme) -> Arc<Self> {
+        let make = || Arc::new(self.divided(scheme).finished(scheme));
+        match &self.shared {
+            Some(shared) => Arc::clone(shared.refined.get_or_init(make)),
+            None => make(),
+        }
     }
 
     /// The same, without what follows from the rest.
@@ -448,32 +523,96 @@ impl Fan {
             age: self.age + 1,
             sharpness: duller(self.sharpness),
             depth: 0,
+            shared: shared(spokes.len()),
             spokes,
             facets,
         }
     }
 
-    /// The same vertex, seen from the face that is so many places earlier.
-    pub(super) fn rotated(&self, places: usize) -> Self {
-        let mut fan = self.clone();
-        let places = places % fan.spokes.len();
-        fan.spokes.rotate_right(places);
-        fan.facets.rotate_right(places);
-        fan.origin = fan.origin.map(|origin| Arc::new(origin.rotated(places)));
-        fan
+    /// Two points so that the vertex is within the triangle of itself and them on all later levels, too; `None` if they are not known.
+    fn find_carriers(&self, scheme: SubdivisionScheme) -> Option<[DVec3; 2]> {
+        if !self.is_final() {
+            return None;
+        }
+        match self.rule(false) {
+            Rule::Corner => Some([self.point; 2]),
+            Rule::Crease(a, b) => Some([a, b].map(|j| self.spokes[j].point)),
+            Rule::Smooth if self.spokes.iter().any(|s| s.sharpness > 0.0) => None,
+            Rule::Smooth => {
+                // The vertex and the means of its neighbours depend on each other alone, with positive weights.
+                let n = self.spokes.len() as f64;
+                let spokes = sum(self.spokes.iter().map(|s| s.point)) / n;
+                Some(match scheme {
+                    SubdivisionScheme::CatmullClark => {
+                        [spokes, sum(self.facets.iter().map(|f| f.center)) / n]
+                    }
+                    SubdivisionScheme::Loop => [spokes; 2],
+                })
+            }
+        }
     }
 
-    /// All points from which those of later levels are made.
-    pub(super) fn points(&self, scheme: SubdivisionScheme) -> impl Iterator<Item = DVec3> + '_ {
+    /// A box around facet `first` on all levels from this one on.
+    ///
+    /// All points of later levels are means of those around the vertex, with positive weights. Points near the facet depend on facets
+    /// that are one further away on each level, and on the vertex: of many facets the far ones don't count.
+    pub(super) fn hull(&self, scheme: SubdivisionScheme, first: usize, level: u32) -> Aabb {
+        let all = 0..self.spokes.len();
+        let Some(shared) = &self.shared else {
+            return Aabb::from_points(self.points(scheme, all));
+        };
+        let carriers = shared.carriers.get_or_init(|| self.find_carriers(scheme));
+        // The patches of the last level reach one spoke further than their facet, and are compared with those of the next.
+        let reach = (DEEPEST.saturating_sub(level) + 3) as usize;
+        match carriers {
+            Some(carriers) if 2 * reach + 2 < self.spokes.len() => {
+                let from = self.turn(first, self.spokes.len() - reach);
+                let near = (0..2 * reach + 2).map(|k| self.turn(from, k));
+                Aabb::from_points(self.points(scheme, near).chain(*carriers))
+            }
+            _ => *shared
+                .hull
+                .get_or_init(|| Aabb::from_points(self.points(scheme, all))),
+        }
+    }
+
+    /// The vertex, and these of its spokes and facets, from which points of later levels are made.
+    fn points(
+        &self,
+        scheme: SubdivisionScheme,
+        which: impl Iterator<Item = usize> + Clone,
+    ) -> impl Iterator<Item = DVec3> {
         let has_centers = scheme == SubdivisionScheme::CatmullClark;
-        let facets = self
-            .facets
-            .iter()
+        let facets = which
+            .clone()
+            .map(|j| self.facets[j])
             .filter(move |f| has_centers && f.sides != 0)
             .map(|f| f.center);
-        let spokes = self.spokes.iter().map(|s| s.point);
+        let spokes = which.map(|j| self.spokes[j].point);
         std::iter::once(self.point).chain(spokes).chain(facets)
     }
+
+    /// The bytes that it takes, with what it has made for all faces.
+    pub(super) fn bytes(&self) -> usize {
+        let mut sum = size_of::<Self>()
+            + size_of_val(self.spokes.as_slice())
+            + size_of_val(self.facets.as_slice());
+        if let Some(shared) = &self.shared {
+            let made = [&shared.refined, &shared.nearer];
+            let made = made.into_iter().filter_map(|fan| fan.get());
+            sum += size_of::<Shared>() + made.map(|fan| fan.bytes()).sum::<usize>();
+        }
+        sum
+    }
+
+    /// Whether all faces at the vertex share it.
+    pub(super) fn is_shared(&self) -> bool {
+        self.shared.is_some()
+    }
+}
+
+fn shared(spokes: usize) -> Option<Box<Shared>> {
+    (spokes > FEW).then(Box::default)
 }
 
 /// The depth of a new vertex on an edge that has this sharpness from now on.

@@ -18,8 +18,8 @@ type Triangle = [[[f64; 4]; 5]; 5];
 pub(super) fn edge_curve(ring: &Ring, i: usize) -> Curve<4, 5> {
     let (a, b) = (ring.corner(i), ring.corner(i + 1));
     let (p, q) = (a.place(ring.scheme), b.place(ring.scheme));
-    let (c, d) = (a.point, b.point);
-    if a.spokes[0].sharpness > 0.0 {
+    let (c, d) = (a.point(), b.point());
+    if a.spoke(0).sharpness > 0.0 {
         // A cubic, elevated.
         let near = |x: DVec3, y: DVec3| (x * 2.0 + y) / 3.0;
         let (first, second) = (near(c, d), near(d, c));
@@ -41,14 +41,14 @@ pub(super) fn edge_curve(ring: &Ring, i: usize) -> Curve<4, 5> {
 
 /// The triangle of a face.
 fn triangle(ring: &Ring) -> Triangle {
-    let point = |i: usize| ring.corner(i).point;
+    let point = |i: usize| ring.corner(i).point();
     // Opposite to the face beyond edge `i`.
     let beyond = |i: usize| {
         let (a, b) = (ring.corner(i), ring.corner(i + 1));
-        if a.spokes[0].sharpness > 0.0 {
-            (a.point + b.point) - point(i + 2)
+        if a.spoke(0).sharpness > 0.0 {
+            (a.point() + b.point()) - point(i + 2)
         } else {
-            a.spokes[a.before(0)].point
+            a.spoke_before().point
         }
     };
     let within = |i: usize| {

@@ -5,7 +5,6 @@ use super::super::part::Part;
 use super::super::trim::Region;
 use super::arc::Arc as Curve;
 use super::boxes::Boxes;
-use crate::Primitive;
 use std::sync::Arc;
 use strahl_math::{Aabb, DVec2, DVec3};
 
@@ -91,7 +90,7 @@ pub(super) struct Standing {
 impl Face {
     /// The face of a surface, not continued yet.
     pub(super) fn new(surface: &Nurbs) -> Self {
-        let size = surface.bounds().size().length();
+        let size = surface.whole.size().length();
         let parts: Vec<Part> = surface.parts.iter().map(Part::copy).collect();
         let region = surface.trimming.clone();
         let mut curves: Vec<Curve> = vec![];

@@ -29,7 +29,7 @@ fn bad_meshes_are_refused_with_the_reason() {
             Box::new(|d| (d.sizes, d.indices) = (vec![], vec![])),
         ),
         (
-            "from 3 to 1000, found 2",
+            "from 3 to 10000, found 2",
             Box::new(|d| {
                 d.sizes.push(2);
                 d.indices.extend([0, 1]);
@@ -139,6 +139,48 @@ fn ugly_meshes_are_met() {
             let list = surface.passes(&Ray::new(from, to - from));
             let sum: i32 = list.iter().map(|pass| pass.sign).sum();
             assert_eq!(sum, 0, "mesh {number}: {from} {to} {list:?}");
+        }
+    }
+}
+
+/// Faces that touch in a vertex only stay together there, as in OpenSubdiv: it is a corner of them. Their limits came apart.
+#[test]
+fn faces_that_touch_in_a_vertex_stay_together() {
+    let mut random = Random::new(6);
+    for scheme in [CatmullClark, Loop] {
+        // Two closed meshes that have a vertex in common, and two triangles, like a bow tie.
+        let one = tetrahedron(scheme);
+        let mut touching = one.clone();
+        touching.points.extend(
+            one.points
+                .iter()
+                .skip(1)
+                .map(|p| *p * -1.0 + one.points[0] * 2.0),
+        );
+        let other = one.indices.iter().map(|i| if *i == 0 { 0 } else { i + 3 });
+        touching.indices.extend(other);
+        touching.sizes.extend(&one.sizes);
+        // The point mirror turns its faces.
+        for face in touching.indices[12..].chunks_mut(3) {
+            face.reverse();
+        }
+        let points = (0..5).map(|_| random.cube()).collect();
+        let bow = SubdivisionData::new(scheme, points, [[0, 1, 2], [0, 3, 4]]);
+        for data in [touching, bow] {
+            let surface = surface(&data);
+            let mut met = vec![];
+            for element in 0..surface.elements() {
+                let [u, v] = [0.0, 1.0];
+                for uv in [[u, u], [v, u], [u, v]] {
+                    let ([point, ..], _) = jet(&surface, element, uv);
+                    if (point - data.points[0]).length() < 1e-13 {
+                        met.push(element);
+                        break;
+                    }
+                }
+            }
+            let faces = data.indices.iter().filter(|i| **i == 0).count();
+            assert_eq!(met.len(), faces, "{scheme:?}: {met:?}");
         }
     }
 }

@@ -118,7 +118,7 @@ fn what_is_left_around_a_vertex_is_tiny() {
                 continue;
             }
             while !ring.is_leaf() {
-                let depth = |k: &usize| ring.corners[*k].depth;
+                let depth = |k: &usize| ring.corners[*k].depth();
                 let deepest = (0..ring.corners.len()).max_by_key(depth);
                 ring = ring.children().swap_remove(deepest.expect("a corner"));
             }

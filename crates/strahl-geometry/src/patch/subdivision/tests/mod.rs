@@ -4,6 +4,7 @@ mod borders;
 mod creases;
 mod hostile;
 mod limits;
+mod many;
 mod oracle;
 mod silhouettes;
 
