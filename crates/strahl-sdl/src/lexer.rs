@@ -334,6 +334,12 @@ impl<'a> Lexer<'a> {
         let rest = &self.bytes[start..];
         let (value, length) = number::number(rest);
         self.position += length;
+        let (text, rest) = rest.split_at(length);
+        let is_whole = text.iter().all(u8::is_ascii_digit);
+        if !is_whole && matches!(rest, [b'.', b'0'..=b'9', ..]) {
+            let help = "remove one of the points, or put a comma between two numbers";
+            self.problem(self.position, "this number has a second point", help);
+        }
         self.push(Kind::Number, start, value.to_bits());
     }
 

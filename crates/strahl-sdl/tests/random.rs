@@ -4,6 +4,7 @@ use crate::groups;
 
 groups! {
     include_str!("data/random.tsv");
+    patterns_of_a_whole_lie_in_its_space_also_on_shared_parts,
     a_layer_vanishes_below_adc_bailout,
     light_from_behind_ends_where_its_grey_value_is_below_adc_bailout,
     the_reflection_of_a_lower_layer_weighs_the_grey_value_of_what_passes,
@@ -14,6 +15,7 @@ groups! {
     the_inverse_of_a_clipped_object_is_clipped,
     a_bump_map_lies_on_the_surface,
     interpolate_3_is_bicubic,
+    bumps_of_bicubic_interpolation_go_beyond_the_texels,
     interpolation_ends_at_the_edges_of_once,
     normal_of_a_panoramic_camera,
     maps_may_fall,

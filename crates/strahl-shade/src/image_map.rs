@@ -159,7 +159,9 @@ impl ImageMap {
 
     /// Red, green, blue, alpha and the filter of the palette.
     fn sample(&self, p: DVec3) -> Option<[f64; 5]> {
-        self.sample_at(self.map_type.place(p))
+        let place = self.map_type.place(p);
+        let within = |channel: f64| channel.clamp(0.0, 1.0);
+        (!self.is_beside(place)).then(|| self.sample_around(place).map(within))
     }
 
     /// The texel with the transparency of its entry in the palette; row 0 is the top.
@@ -200,11 +202,8 @@ impl ImageMap {
         self.once && beside
     }
 
-    fn sample_at(&self, place: DVec2) -> Option<[f64; 5]> {
-        (!self.is_beside(place)).then(|| self.sample_around(place))
-    }
-
-    /// The same for an image that is repeated.
+    /// The same for an image that is repeated. Bicubic interpolation goes beyond the values of the texels, which bumps show (measured) and
+    /// colours do not.
     fn sample_around(&self, place: DVec2) -> [f64; 5] {
         let (width, height) = (self.image.width(), self.image.height());
         let fraction = place - place.floor();
@@ -232,7 +231,7 @@ impl ImageMap {
                     }
                 }
             }
-            return sum.map(|channel| channel.clamp(0.0, 1.0));
+            return sum;
         }
         let mut total = 0.0;
         for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {

@@ -140,12 +140,13 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
         let flow = if self.on_surface {
             // The root at s = 0 is known: without it the polynomial is a cubic.
             let [_, c1, c2, c3, c4] = coefficients;
+            // What lies behind the start doesn't matter, unless it is the inner surface of a spindle torus.
+            let ring = self.torus.is_ring();
+            let low = if ring { 0.0 } else { low };
             let cubic = Bernstein::from_power(&[c1, c2, c3, c4], low, high).with_error(error);
             let mut started = false;
-            // What lies behind the start doesn't matter, unless it is the inner surface of a spindle torus.
-            let ring = self.torus.minor < self.torus.major;
             let mut window = Window {
-                from: if ring { 0.0 } else { f64::NEG_INFINITY },
+                from: f64::NEG_INFINITY,
                 to: f64::INFINITY,
                 starts_negative: None,
             };
@@ -229,13 +230,12 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
         let (torus, profile) = (self.torus, &self.profile);
         let (low, high) = (part.low(), part.high());
         let inside = |s: f64| profile.value(s) < 0.0;
-        let (first, last) =
-            if part.count == RootCount::One && !self.on_surface && torus.minor < torus.major {
-                // Beyond doubt, and there is no inner surface: the distance has the sign of the polynomial.
-                (part.rising, !part.rising)
-            } else {
-                (inside(low), inside(high))
-            };
+        let (first, last) = if part.count == RootCount::One && torus.is_ring() {
+            // Beyond doubt, and there is no inner surface: the distance has the sign of the polynomial, also behind a known root.
+            (part.rising, !part.rising)
+        } else {
+            (inside(low), inside(high))
+        };
         if first == last {
             return (part.count != RootCount::Even).then(|| part.root());
         }
@@ -288,6 +288,11 @@ impl Torus {
     /// The radius of the tube.
     pub fn minor(&self) -> f64 {
         self.minor
+    }
+
+    /// Whether the tube does not overlap itself, so that there is no inner surface.
+    fn is_ring(&self) -> bool {
+        self.minor < self.major
     }
 
     /// The squared distance of a point (relative to the centre) from the circle, less the squared minor radius, and its derivative

@@ -26,7 +26,7 @@ mod statement;
 mod weight;
 
 pub(super) use bitmap::KnownPicture;
-pub(super) use material::{KnownMaterials, fill_parts, is_bare};
+pub(super) use material::{KnownMaterials, fill_parts, is_bare, is_same_everywhere, placed};
 
 pub use inside::inside;
 pub use pattern::pattern_words;

@@ -69,7 +69,6 @@ fn points_that_are_no_fractions() {
         kinds("2.x"),
         [Kind::Number, Kind::Dot, Kind::Word, Kind::End]
     );
-    assert_eq!(numbers("1.5.5"), [1.5, 0.5]);
 }
 
 #[test]
@@ -82,6 +81,15 @@ fn comments_nest_and_strings_hide_them() {
     assert_eq!(lexed.strings, [Arc::from("/* \"quoted\" \u{e9}\n")]);
     let latin = whole(b"\"caf\xe9\"");
     assert_eq!(latin.strings, [Arc::from("caf\u{e9}")]);
+}
+
+#[test]
+fn a_second_point_in_a_number_is_reported() {
+    for (text, start) in [("1.5.5", 3), ("<0,.0.95>", 5), ("1e5.2", 3)] {
+        let lexed = whole(text.as_bytes());
+        assert_eq!(lexed.problems.len(), 1, "{text}");
+        assert_eq!(lexed.problems[0].start, start);
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-use super::Texture;
+use super::{Texture, is_uniform, transform};
 use crate::parser::Parser;
 use std::sync::Arc;
 use strahl_math::Transform;
@@ -95,6 +95,32 @@ impl Texture {
             && self.inner_surface.is_none()
             && self.components.is_none()
             && self.interior.is_some()
+    }
+}
+
+/// Whether a material looks the same everywhere, so that [`placed`] changes nothing.
+pub(in crate::grammar) fn is_same_everywhere(material: &Material) -> bool {
+    let mut textures = [&material.texture, &material.inner_texture].into_iter();
+    textures.all(|texture| texture.as_ref().is_none_or(|t| is_uniform(&t.0)))
+}
+
+/// A material after a transformation of its space.
+pub(in crate::grammar) fn placed(material: &Material, by: &Transform) -> Material {
+    let moved = |texture: &SharedTexture| {
+        let mut surface = Surface::clone(&texture.0);
+        transform(&mut surface, by);
+        SharedTexture(Arc::new(surface))
+    };
+    let texture = material.texture.as_ref().map(moved);
+    let inner_texture = if material.inner_texture == material.texture {
+        texture.clone()
+    } else {
+        material.inner_texture.as_ref().map(moved)
+    };
+    Material {
+        texture,
+        inner_texture,
+        ..Material::clone(material)
     }
 }
 
