@@ -44,6 +44,31 @@ pub(super) fn closest(
     closest
 }
 
+/// Appends all crossings in the range.
+pub(super) fn all(
+    range: Interval,
+    from: Option<SurfaceId>,
+    out: &mut Vec<PrimHit>,
+    walk: impl FnOnce(&Question, &mut dyn FnMut(Event) -> ControlFlow<()>),
+) {
+    let question = Question {
+        range,
+        on_surface: from.is_some(),
+        errors: false,
+    };
+    // The lower end of a range is open, and so is that behind a hit.
+    let mut rest = range;
+    walk(&question, &mut |event| match event {
+        Event::Crossing { t, .. } if rest.accepts(t) && t.is_finite() => {
+            rest.min = t;
+            out.push(PrimHit::simple(t, 0));
+            ControlFlow::Continue(())
+        }
+        Event::Crossing { t, .. } if t > range.max => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    });
+}
+
 /// Lists the crossings as [`crate::Solid::crossings`] wants them.
 pub(super) fn list(
     range: Interval,

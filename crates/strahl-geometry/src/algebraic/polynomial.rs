@@ -412,6 +412,19 @@ impl Primitive for Polynomial {
         })
     }
 
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        event::all(range, from, out, |question, visit| {
+            self.walk(ray, question, visit);
+        });
+    }
+
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let p = ray.origin * self.per_length + (ray.direction * self.per_length) * hit.t;
         let Dual { value, gradient } = self.dual(p);

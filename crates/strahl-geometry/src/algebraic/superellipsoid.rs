@@ -370,6 +370,19 @@ impl Primitive for Superellipsoid {
         })
     }
 
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        event::all(range, from, out, |question, visit| {
+            self.walk(ray, question, visit);
+        });
+    }
+
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let p = ray.at(hit.t);
         let (value, gradient) = self.gauge.value_and_gradient(p);

@@ -511,6 +511,25 @@ impl Primitive for Torus {
         closest
     }
 
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        mut range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        self.walk(ray, from.is_some(), |event| match event {
+            Event::Crossing { t, .. } if range.accepts(t) => {
+                range.min = t;
+                out.push(PrimHit::simple(t, 0));
+                ControlFlow::Continue(())
+            }
+            Event::Crossing { t, .. } if t > range.max => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        });
+    }
+
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let axes = self.frame.axes(self.axis);
         let mut bare = SurfacePoint::UNKNOWN;

@@ -1,6 +1,7 @@
 use super::extrusion::Extrusion;
 use super::outline::Outline;
 use super::spans::WholeLine;
+use crate::primitive::hits_of_solid;
 use crate::primitives::check_finite;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
@@ -101,6 +102,17 @@ impl Primitive for Glyph {
     ) -> Option<PrimHit> {
         self.extrusion()
             .first_hit(&self.local(ray), range, from, scratch)
+    }
+
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        hits_of_solid(self, ray, range, from, scratch, out);
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

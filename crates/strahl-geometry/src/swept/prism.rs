@@ -2,6 +2,7 @@ use super::curve::Spline;
 use super::extrusion::Extrusion;
 use super::outline::{Outline, OutlineBuilder};
 use super::spans::WholeLine;
+use crate::primitive::hits_of_solid;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
@@ -167,6 +168,17 @@ impl Primitive for Prism {
     ) -> Option<PrimHit> {
         self.extrusion()
             .first_hit(&turned_ray(ray), range, from, scratch)
+    }
+
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        hits_of_solid(self, ray, range, from, scratch, out);
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

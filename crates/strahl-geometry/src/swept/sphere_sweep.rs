@@ -2,6 +2,7 @@ use super::curve::Piece;
 use super::curve::catmull_rom;
 use super::round::{Line, Segment};
 use super::spans::{WholeLine, snap};
+use crate::primitive::hits_of_solid;
 use crate::primitives::point_error;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId, SurfacePoint,
@@ -193,6 +194,17 @@ impl Primitive for SphereSweep {
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         self.first_hit(ray, range, from, scratch)
+    }
+
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        hits_of_solid(self, ray, range, from, scratch, out);
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

@@ -54,6 +54,17 @@ macro_rules! turned_about_the_axis {
                 Revolution(&self.meridian).any_hit(ray, range, from, scratch)
             }
 
+            fn all_hits(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                scratch: &mut Scratch,
+                out: &mut Vec<PrimHit>,
+            ) {
+                crate::primitive::hits_of_solid(self, ray, range, from, scratch, out);
+            }
+
             fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
                 Revolution(&self.meridian).surface_at(ray, hit)
             }

@@ -177,6 +177,21 @@ impl Primitive for Blob {
         hit
     }
 
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        let mut pieces = scratch.take_pieces();
+        event::all(range, from, out, |question, visit| {
+            self.walk(ray, question, &mut pieces, visit);
+        });
+        scratch.give_pieces(pieces);
+    }
+
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let p = ray.at(hit.t);
         let (field, gradient) = self.field(p);

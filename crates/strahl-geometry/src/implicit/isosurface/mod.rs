@@ -12,6 +12,7 @@ use super::octree::{Cell, Content, Octree, Visitor as _};
 use super::slopes::Slopes;
 use super::workspace::with_workspace;
 use crate::algebraic::{self, Question};
+use crate::primitive::{hits_of_solid, one_by_one};
 use crate::{
     Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
     SurfacePoint,
@@ -339,8 +340,7 @@ impl Isosurface {
             .intersection(Interval::new(range.min - start, range.max - start));
         let skips = needed.min > 0.0 && from != Some(SURFACE);
         let enter = passage.enter.filter(|enter| enter.hit.t == start && !skips);
-        let decision = self.decision.get_or_init(|| self.find_decision(workspace));
-        if let Some(decision) = decision {
+        if let Some(decision) = self.decision(workspace) {
             let stretch = Interval::new(start, end);
             let question = Question {
                 range: Interval::new(
@@ -382,6 +382,12 @@ impl Isosurface {
             visit(Event::Crossing(self.cap(passage.exit, Side::Exit)))?;
         }
         ControlFlow::Continue(())
+    }
+
+    /// The polynomials that decide, if there are some.
+    fn decision(&self, workspace: &mut Workspace) -> Option<&Decision> {
+        let decision = self.decision.get_or_init(|| self.find_decision(workspace));
+        decision.as_ref()
     }
 
     /// As [`Isosurface::walk`], where polynomials decide.
@@ -625,6 +631,23 @@ impl Primitive for Isosurface {
             let _ = self.walk(ray, (range, from), range, workspace, visit);
         });
         any.is_some()
+    }
+
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        // The last bits of a search depend on where it begins.
+        let is_solved = with_workspace(|workspace| self.decision(workspace).is_some());
+        if is_solved {
+            hits_of_solid(self, ray, range, from, scratch, out);
+        } else {
+            one_by_one(self, ray, range, from, scratch, out);
+        }
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
