@@ -47,6 +47,12 @@ impl Ref {
         from_lane(self.bounds.lo().w)
     }
 
+    /// The largest absolute coordinate.
+    fn reach(&self) -> f32 {
+        let farthest = self.bounds.lo().abs().max(self.bounds.hi().abs());
+        farthest.truncate().max_element()
+    }
+
     /// Leaves hold primitives of one class only.
     #[inline(always)]
     pub(crate) fn class(&self) -> u8 {
@@ -119,6 +125,12 @@ impl Extent {
     }
 }
 
+/// So many primitives, at most, are taken out of the tree because they reach far beyond all others.
+const MOST_FAR: usize = 8;
+
+/// What reaches this many times as far as all others is taken out of the tree.
+const FAR: f32 = 512.0;
+
 /// The references to the bounded ones of `count` primitives, whose box and class `primitive` returns, and the numbers of those
 /// without bounds.
 pub(crate) fn gather(
@@ -158,6 +170,37 @@ pub(crate) fn gather(
     (refs, unbounded)
 }
 
+/// Moves what reaches far beyond all others to the primitives that are tested for every ray, as the sphere of a sky around a house: the culling tests must allow for the rounding
+/// errors of the largest coordinate, so in a tree with a sky of a million units no box would be smaller than half of one.
+pub(crate) fn take_out_far(refs: &mut Vec<Ref>, apart: &mut Vec<u32>) {
+    // The farthest reaches, the largest first.
+    let mut reaches = [0.0f32; MOST_FAR + 1];
+    for r in refs.iter() {
+        let reach = r.reach();
+        if reach > reaches[MOST_FAR] {
+            let place = reaches.partition_point(|other| *other >= reach);
+            reaches[place..].rotate_right(1);
+            reaches[place] = reach;
+        }
+    }
+    // Where they fall most.
+    let falls = reaches.windows(2).map(|pair| pair[0] / pair[1]);
+    let falls = falls
+        .enumerate()
+        .filter(|(_, fall)| *fall >= FAR && fall.is_finite());
+    let Some((last, _)) = falls.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+        return;
+    };
+    let least = reaches[last];
+    refs.retain(|r| {
+        let is_far = r.reach() >= least;
+        if is_far {
+            apart.push(r.id());
+        }
+        !is_far
+    });
+}
+
 /// The bounds of the doubled centres of primitives.
 pub(super) fn centers(refs: &[Ref]) -> Box32 {
     let mut span = Box32::EMPTY;
@@ -170,4 +213,39 @@ pub(super) fn centers(refs: &[Ref]) -> Box32 {
 /// The classes of primitives, as bits.
 pub(super) fn classes(refs: &[Ref]) -> u8 {
     refs.iter().fold(0, |all, r| all | 1 << r.class())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_math::DVec3;
+
+    /// The numbers of those boxes that are taken out; the boxes reach so far.
+    fn apart(reaches: &[f64]) -> Vec<u32> {
+        let boxes: Vec<Aabb> = reaches
+            .iter()
+            .map(|reach| Aabb::new(DVec3::splat(-reach), DVec3::splat(reach * 0.5)))
+            .collect();
+        let (mut refs, mut apart) = gather(boxes.len(), |id| (boxes[id as usize], 0));
+        take_out_far(&mut refs, &mut apart);
+        assert_eq!(refs.len() + apart.len(), boxes.len());
+        apart
+    }
+
+    #[test]
+    fn what_reaches_far_beyond_all_others_is_taken_out() {
+        assert_eq!(apart(&[1.0, 1e6, 2.0, 1.5]), [1]);
+        assert_eq!(apart(&[1.0, 1e6, 2.0, 1e5, 1.5, 1e8]), [1, 3, 5]);
+        assert_eq!(apart(&[1.0, f64::INFINITY, 1e6]), [1, 2]);
+        // Not far enough, too many, nothing else.
+        assert_eq!(apart(&[1.0, 500.0, 3.0]), []);
+        let mut many = vec![1e6; MOST_FAR + 1];
+        many.extend([1.0; 20]);
+        assert_eq!(apart(&many), []);
+        many.remove(0);
+        assert_eq!(apart(&many).len(), MOST_FAR);
+        assert_eq!(apart(&[1e6, 1e6]), []);
+        assert_eq!(apart(&[0.0, 1e6]), []);
+        assert_eq!(apart(&[]), []);
+    }
 }

@@ -10,9 +10,9 @@ impl Bvh8 {
     /// Whether a beam certainly meets no leaf.
     pub(super) fn beam_misses(&self, beam: &Beam) -> bool {
         let Some(tree) = &self.tree else {
-            return self.unbounded.ids().is_empty();
+            return self.apart.ids().is_empty();
         };
-        self.unbounded.ids().is_empty()
+        self.apart.ids().is_empty()
             && (beam.misses(tree.bounds.bounds())
                 || match &tree.nodes {
                     Nodes::Full(nodes) => {

@@ -5,7 +5,7 @@ use super::presplit::presplit;
 use super::{Bvh8, Bvh8Parameters, Tree, fast, high};
 use crate::boxes::Box32;
 use crate::bvh::bins::Bins;
-use crate::bvh::refs::{Ref, gather};
+use crate::bvh::refs::{Ref, gather, take_out_far};
 use crate::bvh::split::{LeafModel, Set};
 use crate::parameters::{Parameters, choice};
 use crate::shapes::all_bounds;
@@ -67,14 +67,15 @@ impl Bvh8 {
     /// Builds the hierarchy over primitives `0..n`, n at most [`Bvh8::MAX_PRIMITIVES`].
     pub(crate) fn build_from(shapes: &dyn Shapes, parameters: &Bvh8Parameters) -> Self {
         let primitive = |id| (shapes.bounds(id), shapes.class(id) & 3);
-        let (refs, unbounded) = gather(shapes.count(), primitive);
+        let (mut refs, mut apart) = gather(shapes.count(), primitive);
+        take_out_far(&mut refs, &mut apart);
         let bvh = Self {
             tree: (!refs.is_empty()).then(|| match parameters.build {
                 Build::Default => Tree::build(presplit(shapes, refs, PRESPLIT)),
                 Build::Fast => fast::build(refs),
                 Build::High => high::build(shapes, refs),
             }),
-            unbounded: List::of(unbounded),
+            apart: List::of(apart),
             simd: parameters
                 .simd
                 .and_then(Simd::of)

@@ -112,12 +112,12 @@ impl Parameters for Bvh8Parameters {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh8 {
     tree: Option<Tree>,
-    /// The primitives that are not in the tree: without bounds, or too far away for f32.
-    unbounded: List,
+    /// The primitives that are not in the tree, because they have no bounds, or reach far beyond all others.
+    apart: List,
     simd: Simd,
 }
 
-/// The tree of all bounded primitives, at least one.
+/// The tree of all other primitives, at least one.
 #[derive(Clone, Debug, PartialEq)]
 struct Tree {
     root: Child,
@@ -149,7 +149,7 @@ impl Bvh8 {
     /// Whether all primitives are in leaves.
     #[inline(always)]
     pub fn has_leaves_only(&self) -> bool {
-        self.unbounded.ids().is_empty()
+        self.apart.ids().is_empty()
     }
 
     /// The same hierarchy in little memory: nodes with less exact boxes.

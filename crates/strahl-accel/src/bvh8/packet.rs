@@ -40,7 +40,7 @@ impl Bvh8 {
                 Nodes::Compact(_) => return false,
             },
         };
-        for id in self.unbounded.ids() {
+        for id in self.apart.ids() {
             let alive = packet.alive();
             visitor.visit_together(*id, alive, &mut packet.t_max);
             stats.primitive_tests += u64::from(alive.count_ones());

@@ -51,7 +51,7 @@ impl Accelerator for Bvh8 {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let t_max = visit_all(self.unbounded.ids(), range.max, visitor, stats);
+        let t_max = visit_all(self.apart.ids(), range.max, visitor, stats);
         if t_max > f64::NEG_INFINITY
             && let Some(tree) = &self.tree
         {
@@ -87,7 +87,7 @@ impl Accelerator for Bvh8 {
             .tree
             .as_ref()
             .map_or(0, |t| t.nodes.bytes() + size_of_val(t.slots.as_slice()));
-        tree + self.unbounded.bytes()
+        tree + self.apart.bytes()
     }
 
     fn nodes(&self) -> usize {
@@ -96,7 +96,7 @@ impl Accelerator for Bvh8 {
 
     fn references(&self) -> usize {
         let used = self.slots().iter().filter(|id| **id != crate::NO_PRIMITIVE);
-        used.count() + self.unbounded.references()
+        used.count() + self.apart.references()
     }
 }
 

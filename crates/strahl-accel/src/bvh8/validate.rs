@@ -14,7 +14,7 @@ impl Bvh8 {
     /// The first violation found.
     pub fn validate(&self, bounds: &[Aabb]) -> Result<(), String> {
         let mut places = Places::new(bounds);
-        for id in self.unbounded.ids() {
+        for id in self.apart.ids() {
             places.note(*id)?;
         }
         if let Some(tree) = &self.tree {

@@ -28,7 +28,7 @@ impl Rng {
     }
 }
 
-/// Boxes of all sizes, some flat, some points, some sharing planes, some equal, a few unbounded or empty.
+/// Boxes of all sizes, some flat, some points, some sharing planes, some equal, a few unbounded, empty or far beyond the others.
 pub(crate) fn boxes(rng: &mut Rng, count: usize, offset: DVec3, scale: f64) -> Vec<Aabb> {
     let mut all: Vec<Aabb> = Vec::new();
     for index in 0..count {
@@ -61,6 +61,11 @@ pub(crate) fn boxes(rng: &mut Rng, count: usize, offset: DVec3, scale: f64) -> V
             DVec3::new(f64::NEG_INFINITY, offset.y, offset.z),
             DVec3::new(f64::INFINITY, offset.y, offset.z),
         );
+    }
+    if count > 20 && rng.below(3) == 0 {
+        let far = 1e6 * (scale + offset.abs().max_element());
+        all[13] = Aabb::new(DVec3::splat(-far), DVec3::splat(far));
+        all[17] = Aabb::new(DVec3::splat(0.1 * far), DVec3::splat(0.2 * far));
     }
     all
 }
