@@ -12,6 +12,7 @@ groups! {
     image_pattern_ignores_phase_without_frequency,
     a_replaced_block_pattern_leaves_frequency_0,
     a_normal_keeps_the_map_of_the_pattern_it_replaces,
+    the_surfaces_of_open_cylinders_and_cones_count_as_inside,
     the_inverse_of_a_clipped_object_is_clipped,
     a_bump_map_lies_on_the_surface,
     interpolate_3_is_bicubic,

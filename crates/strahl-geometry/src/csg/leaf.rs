@@ -138,22 +138,19 @@ impl Leaf {
     /// Whether the points of the shape's surface count as inside, which matters only where faces coincide.
     ///
     /// These are POV-Ray's rules where it has any (measured: the surfaces of planes, blobs, superellipsoids and isosurfaces
-    /// always count, those of cylinders, cones and meshes never; for the others rounding decides, and this is the result for
-    /// axis-aligned faces).
+    /// always count, also those of open cylinders and cones, those of closed ones and of meshes never; for the others rounding decides, and this
+    /// is the result for axis-aligned faces).
     fn has_its_surface(&self) -> bool {
         let shape = match &self.shape {
             Shape::Bounded(bounded) => bounded.shape(),
             shape => shape,
         };
-        self.solid().is_some()
-            && !matches!(
-                shape,
-                Shape::Cylinder(_)
-                    | Shape::Cone(_)
-                    | Shape::Prism(_)
-                    | Shape::TriangleMesh(_)
-                    | Shape::Brep(_)
-            )
+        match shape {
+            Shape::Cylinder(cylinder) => !cylinder.is_capped(),
+            Shape::Cone(cone) => !cone.is_capped(),
+            Shape::Prism(_) | Shape::TriangleMesh(_) | Shape::Brep(_) => false,
+            _ => self.solid().is_some(),
+        }
     }
 
     /// Where the line is inside of a convex solid or a quadric; the ends are those that [`Leaf::crossings`] lists. `None` for other
