@@ -667,3 +667,23 @@ fn a_deprecated_name_is_told_where_it_is_used() {
         [(2, "`A` is deprecated: first".to_owned())]
     );
 }
+
+/// As in POV-Ray (measured), which finds no component then.
+#[test]
+fn modifiers_of_a_blob_stand_behind_its_components() {
+    for text in [
+        "blob { sturm sphere { 0, 1, 1 } }",
+        "blob { threshold 0.5 hierarchy off sphere { 0, 1, 1 } }",
+        "blob { threshold 0.5 pigment { rgb 1 } sphere { 0, 1, 1 } }",
+    ] {
+        let found = errors(text);
+        assert!(
+            found.len() == 1 && found[0].contains("expected a component of the blob"),
+            "{text}: {found:?}"
+        );
+    }
+    assert_eq!(
+        errors("blob { sphere { 0, 1, 1 } sturm sphere { x, 1, 1 } }").len(),
+        1
+    );
+}
