@@ -592,3 +592,98 @@ fn division_by_zero_is_told_and_goes_on() {
     assert_eq!(parsed.scene.expect("no errors").objects.0.len(), 1);
     assert!(parsed.diagnostics[0].message.contains("division by zero"));
 }
+
+/// The lines and texts of the warnings of a scene without errors.
+fn warnings(text: &str) -> Vec<(u32, String)> {
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    assert!(parsed.scene.is_some(), "{:?}", parsed.diagnostics);
+    let said = parsed.diagnostics.into_iter();
+    said.map(|d| (d.span.line, d.message)).collect()
+}
+
+/// Lines and rules as measured with POV-Ray, which tells a use in a loop once for each round.
+#[test]
+fn a_deprecated_name_is_told_where_it_is_used() {
+    let lines = |text: &str| -> Vec<u32> { warnings(text).iter().map(|w| w.0).collect() };
+    let said = warnings("#declare deprecated \"use B\" A = 1;\n#declare B = A;");
+    assert_eq!(said, [(2, "`A` is deprecated: use B".to_owned())]);
+    let said = warnings("#declare deprecated once A = 1;\n#declare B = 2 * A;\n#declare C = A;");
+    let own = "`A` is deprecated: its author advises against using it";
+    assert_eq!(said, [(2, own.to_owned())]);
+    let said = warnings("#declare deprecated concat(\"a\", \"b\") A = 1;\n#declare B = <1, A, 2>;");
+    assert_eq!(said, [(2, "`A` is deprecated: ab".to_owned())]);
+
+    let begin = "#declare deprecated \"old\" A = 1;\n";
+    for (text, expected) in [
+        ("#declare B = A;\n#declare B = <A, 1>;", &[2, 3][..]),
+        (
+            "#for (I, 1, 3) #declare B = A; #end\n#declare B = A + 1;",
+            &[2, 3],
+        ),
+        ("#ifdef (A) #end #ifndef (A) #end #if (0) A #end", &[]),
+        // A new value is a use and changes nothing, and so is a local name like it.
+        ("#declare A = 2;\n#declare B = A;", &[2, 3]),
+        ("#undef A\n#declare A = 2;\n#declare B = A;", &[2]),
+        // A parameter is told at the call.
+        (
+            "#macro M(X)\n#declare B = X + X;\n#declare X = 1;\n#end\nM(A)",
+            &[6],
+        ),
+        (
+            "#declare F = function(x) { x + A }\n#declare B = F(1);",
+            &[2],
+        ),
+        ("#macro M()\n#local A = 2;\n#declare B = A;\n#end M()", &[3]),
+        ("#declare D = dictionary { .A: 1 };\n#declare B = D.A;", &[]),
+    ] {
+        assert_eq!(lines(&format!("{begin}{text}")), expected, "{text}");
+    }
+    for (kind, value, used) in [
+        ("sphere", "sphere { 0, 1 }", "object { A }"),
+        (
+            "texture",
+            "texture { pigment { rgb 1 } }",
+            "sphere { 0, 1 texture { A } }",
+        ),
+        (
+            "pigment",
+            "pigment { rgb 1 }",
+            "sphere { 0, 1 pigment { A } }",
+        ),
+        ("colour", "rgb 1;", "sphere { 0, 1 pigment { A } }"),
+        ("string", "\"s\"", "#declare B = concat(A, \"x\");"),
+        ("array", "array[2] { 1, 2 }", "#declare A[0] = 2;"),
+        ("function", "function(x) { x }", "#declare B = A(2);"),
+    ] {
+        let text = format!("#declare deprecated \"old\" A = {value}\n\n{used}");
+        assert_eq!(lines(&text), [3], "{kind}");
+    }
+    // Only the first declaration of a name counts.
+    let known = "#declare A = 1;\n#declare deprecated \"old\" A = 2;\n#declare B = A;";
+    assert!(lines(known).is_empty());
+    let twice = "#declare deprecated once \"first\" A = 1;\n#declare deprecated \"second\" A = 2;\n#declare B = A;";
+    assert_eq!(
+        warnings(twice),
+        [(2, "`A` is deprecated: first".to_owned())]
+    );
+}
+
+/// As in POV-Ray (measured), which finds no component then.
+#[test]
+fn modifiers_of_a_blob_stand_behind_its_components() {
+    for text in [
+        "blob { sturm sphere { 0, 1, 1 } }",
+        "blob { threshold 0.5 hierarchy off sphere { 0, 1, 1 } }",
+        "blob { threshold 0.5 pigment { rgb 1 } sphere { 0, 1, 1 } }",
+    ] {
+        let found = errors(text);
+        assert!(
+            found.len() == 1 && found[0].contains("expected a component of the blob"),
+            "{text}: {found:?}"
+        );
+    }
+    assert_eq!(
+        errors("blob { sphere { 0, 1, 1 } sturm sphere { x, 1, 1 } }").len(),
+        1
+    );
+}

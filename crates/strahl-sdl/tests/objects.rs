@@ -108,7 +108,7 @@ fn commas_and_braces_may_be_written_in_many_ways() {
         "blob { threshold 0.6 sphere { x, 1, 2 } cylinder { 0, y, 1, 1 } }",
         "blob { threshold 0.6, sphere { x 1 strength 2 } cylinder { 0 y 1 strength 1 } sturm hierarchy off }",
         "blob { component 2, 1, x cylinder { 0, y, 1, 1 } threshold 0.6 }",
-        "blob { sturm component 2 1 x cylinder { 0, y, 1, 1 } threshold 0.6 }",
+        "blob { component 2 1 x cylinder { 0, y, 1, 1 } threshold 0.6 sturm }",
     ]);
     same(&[
         "blob { sphere { 0, 1, 2 translate x } }",

@@ -230,6 +230,35 @@ fn words_of_old_versions_are_read() {
     assert_eq!(debug(filter), "0.5");
 }
 
+/// As measured, with any value and in all versions.
+#[test]
+fn refraction_in_an_interior_has_no_effect() {
+    let shape = |version: &str, refraction: &str| {
+        let text = format!(
+            "#version {version}; sphere {{ 0, 1 pigment {{ rgbt 1 }} interior {{ ior 1.5 {refraction} }} }}"
+        );
+        let parsed = parse_with(&mut MemoryHost::new(), &text);
+        let said: Vec<String> = parsed
+            .diagnostics
+            .iter()
+            .map(|d| d.message.clone())
+            .collect();
+        let scene = parsed.scene.expect("a scene");
+        (format!("{:?}", scene.objects), said)
+    };
+    for version in ["3.1", "3.7"] {
+        let (plain, _) = shape(version, "");
+        assert_ne!(shape(version, "ior 1.6").0, plain);
+        for value in ["0", "0.5", "1", "1.6", "-1"] {
+            let (with, said) = shape(version, &format!("refraction {value}"));
+            assert_eq!(with, plain, "{version} {value}");
+            assert_eq!(said, ["`refraction` has no effect in an interior"]);
+        }
+    }
+    let found = errors("sphere { 0, 1 interior { refraction x } }");
+    assert_eq!(found.len(), 1, "{found:?}");
+}
+
 #[test]
 fn features_that_are_missing_are_named_in_their_blocks_only() {
     let text =

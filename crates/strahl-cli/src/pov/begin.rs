@@ -110,8 +110,9 @@ fn options_with_value(command: &Command, of: &Command) -> BTreeSet<String> {
     valued(of.get_arguments().chain(command.get_arguments()))
 }
 
+/// An option whose value must be joined to it by `=` (`--profile=FILE`) says nothing about the word that follows.
 fn valued<'a>(options: impl Iterator<Item = &'a clap::Arg>) -> BTreeSet<String> {
-    names(options.filter(|a| a.get_action().takes_values()))
+    names(options.filter(|a| a.get_action().takes_values() && !a.is_require_equals_set()))
 }
 
 /// `--name` and `-n` of the options.

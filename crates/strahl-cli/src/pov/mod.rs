@@ -238,6 +238,24 @@ mod tests {
     }
 
     #[test]
+    fn a_profile_without_a_file_leaves_the_next_word_alone() {
+        is(
+            "a.pov --profile +A0.3",
+            "--sampling adaptive:0.3,3 --profile a.pov",
+        );
+        is(
+            "--profile -L inc a.pov +W8",
+            "--size 8x600 --profile -L inc a.pov",
+        );
+        is("+W8 --profile a.pov", "--size 8x600 --profile a.pov");
+        is("a.pov --profile -A", "--profile a.pov");
+        is(
+            "a.pov --profile=p.json +W8",
+            "--size 8x600 --profile=p.json a.pov",
+        );
+    }
+
+    #[test]
     fn strahls_own_words_stay_as_they_are() {
         for line in [
             "scene.pov -o out.png --size 64x48 -L inc -q",

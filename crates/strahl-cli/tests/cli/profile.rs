@@ -81,3 +81,20 @@ fn a_profile_has_one_picture_and_an_output_of_its_own() {
     ];
     fails(f, &nowhere, 1, &["missing"]);
 }
+
+#[test]
+fn a_switch_or_a_scene_may_follow() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    std::fs::write(f.join("a.pov"), "sphere { 0, 1 }").expect("writable");
+    for args in [
+        &["render", "a.pov", "+W8", "+H6", "--profile", "+A0.3"][..],
+        &["render", "+W8", "+H6", "--profile", "-L", ".", "a.pov"],
+        &["render", "+W8", "+H6", "--profile", "a.pov"],
+    ] {
+        let output = strahl(f, args);
+        let said = stderr(&output);
+        assert!(output.status.success(), "{args:?}: {said}");
+        assert!(said.contains("profile of a.pov: reading "), "{said}");
+    }
+}

@@ -1,5 +1,5 @@
-use crate::keywords::Word;
-use crate::parser::{PResult, Parser, Place, Step, Target};
+use crate::keywords::{Word, WordKind};
+use crate::parser::{Notice, PResult, Parser, Place, Step, Target};
 use crate::symbol::Symbol;
 use crate::token::Kind;
 use crate::value::Value;
@@ -7,9 +7,9 @@ use crate::value::Value;
 impl Parser<'_> {
     /// Runs `#declare` or `#local`, whose keyword is taken.
     pub(super) fn declare(&mut self, local: bool) -> PResult<()> {
-        let deprecated = self.deprecated()?;
+        let notice = self.deprecated()?;
         if self.accept(Kind::LeftParen)? {
-            self.declare_tuple(local)?;
+            self.declare_tuple(local, notice.as_ref())?;
         } else {
             let (target, place) = self.assigned(local)?;
             self.expect(Kind::Equal)?;
@@ -17,11 +17,7 @@ impl Parser<'_> {
                 // Later uses of the name must not report errors of their own.
                 self.doubtful.insert(target.symbol);
             })?;
-            self.assign(&target, value, place)?;
-        }
-        if let Some(text) = deprecated {
-            let place = self.place();
-            self.warn(place, format!("this name is deprecated: {text}"));
+            self.assign_noted(&target, value, place, notice.as_ref())?;
         }
         self.end_of_assignment()
     }
@@ -40,23 +36,41 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `deprecated [once] "text"`: a notice for users of the name, which is read but not shown.
-    fn deprecated(&mut self) -> PResult<Option<String>> {
+    /// Assigns to a name. If that declares it, its uses get the notice; a notice for a known name has no effect, as in POV-Ray (measured).
+    fn assign_noted(
+        &mut self,
+        target: &Target,
+        value: Value,
+        place: Place,
+        notice: Option<&Notice>,
+    ) -> PResult<()> {
+        let notice = notice.filter(|_| self.scopes.at(target).is_none());
+        self.assign(target, value, place)?;
+        if let Some(notice) = notice.filter(|_| target.path.is_empty()) {
+            self.scopes.deprecate(target, notice.clone());
+        }
+        Ok(())
+    }
+
+    /// `deprecated [once] "text"`: a notice for users of the name.
+    fn deprecated(&mut self) -> PResult<Option<Notice>> {
         if !self.raw().is(Word::Deprecated) {
             return Ok(None);
         }
         self.next()?;
-        self.accept_word(Word::Once)?;
+        let once = self.accept_word(Word::Once)?;
         let token = self.peek()?;
-        if token.kind == Kind::String {
-            let text = self.string()?;
-            return Ok(Some(text.to_string()));
-        }
-        Ok(Some(String::new()))
+        let has_text = token.kind == Kind::String
+            || token.word().map(Word::kind) == Some(WordKind::StringFunction);
+        let text = match has_text {
+            true => self.string()?,
+            false => "".into(),
+        };
+        Ok(Some(Notice { text, once }))
     }
 
     /// `(A, B, ...) = values` (3.8): assigns to several names; all values are read before the first one is assigned.
-    fn declare_tuple(&mut self, local: bool) -> PResult<()> {
+    fn declare_tuple(&mut self, local: bool, notice: Option<&Notice>) -> PResult<()> {
         let mut targets = vec![];
         loop {
             let optional = self.raw().is(Word::Optional);
@@ -93,7 +107,7 @@ impl Parser<'_> {
         };
         for (index, (target, place, optional)) in targets.iter().enumerate() {
             match values.get(index).cloned().flatten() {
-                Some(value) => self.assign(target, value, *place)?,
+                Some(value) => self.assign_noted(target, value, *place, notice)?,
                 None if *optional => {}
                 None => {
                     let message = "there is no value for this name in the list on the right";

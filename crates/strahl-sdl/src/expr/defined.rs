@@ -20,7 +20,7 @@ impl Parser<'_> {
             self.take(token)?;
             true
         } else {
-            let symbol = self.raw_name("the name of a variable")?;
+            let symbol = self.asked_name("the name of a variable")?;
             let local = qualified && scope.is(Word::Local);
             match self.scopes.target(symbol, local) {
                 Some(mut target) => {

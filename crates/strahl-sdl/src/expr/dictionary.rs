@@ -76,7 +76,7 @@ impl Parser<'_> {
         let token = self.raw();
         match token.symbol() {
             Some(symbol) => {
-                self.take(token)?;
+                self.take_unused(token);
                 Ok(symbol)
             }
             None => Err(self.unexpected(token, "the key of a dictionary")),

@@ -192,7 +192,7 @@ impl Parser<'_> {
     fn plain_float(&self, token: Token) -> Option<f64> {
         match token.kind {
             Kind::Number => Some(f64::from_bits(token.bits)),
-            Kind::Name => match self.scopes.find(token.symbol()?) {
+            Kind::Name => match self.scopes.find_plain(token.symbol()?) {
                 Some(Value::Float(x)) => Some(*x),
                 _ => None,
             },

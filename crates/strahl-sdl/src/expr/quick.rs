@@ -158,7 +158,7 @@ impl Parser<'_> {
                 *position += 1;
                 self.quick_components(position)?
             }
-            Kind::Name => match self.scopes.find(token.symbol()?)? {
+            Kind::Name => match self.scopes.find_plain(token.symbol()?)? {
                 Value::Float(x) => {
                     *position += 1;
                     Vector::float(*x)
@@ -231,7 +231,7 @@ impl Parser<'_> {
         *position += 1;
         let value = match token.kind {
             Kind::Number => f64::from_bits(token.bits),
-            Kind::Name => match self.scopes.find(token.symbol()?)? {
+            Kind::Name => match self.scopes.find_plain(token.symbol()?)? {
                 Value::Float(x) => *x,
                 _ => return None,
             },

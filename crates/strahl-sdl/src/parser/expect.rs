@@ -130,14 +130,26 @@ impl Parser<'_> {
         }
     }
 
-    /// Takes a name without evaluating it: the name after `#declare`, `#ifdef` or `#macro`.
+    /// Takes a name without evaluating it: the name after `#declare` or `#macro`.
     pub(crate) fn raw_name(&mut self, what: &str) -> PResult<Symbol> {
         let token = self.raw();
+        let symbol = self.as_name(token, what)?;
+        self.take(token)?;
+        Ok(symbol)
+    }
+
+    /// Takes a name that is only asked for, as by `#ifdef`.
+    pub(crate) fn asked_name(&mut self, what: &str) -> PResult<Symbol> {
+        let token = self.raw();
+        let symbol = self.as_name(token, what)?;
+        self.take_unused(token);
+        Ok(symbol)
+    }
+
+    /// The name that a token is.
+    fn as_name(&mut self, token: Token, what: &str) -> PResult<Symbol> {
         match (token.kind, token.symbol()) {
-            (Kind::Name, Some(symbol)) => {
-                self.take(token)?;
-                Ok(symbol)
-            }
+            (Kind::Name, Some(symbol)) => Ok(symbol),
             (Kind::Word, Some(_)) => {
                 let word = self.describe(token);
                 let place = self.place_of(token);

@@ -20,7 +20,7 @@ pub use call::Macro;
 pub(crate) use call::Parameter;
 pub(crate) use frames::{Data, Entry, has_ending};
 pub use report::{Failed, PResult};
-pub(crate) use scope::{Scopes, Step, Target};
+pub(crate) use scope::{Notice, Scopes, Step, Target};
 
 use crate::directives::Files;
 use crate::expr::Members;
@@ -153,6 +153,9 @@ impl Parser<'_> {
     #[inline]
     pub(crate) fn take(&mut self, token: Token) -> PResult<()> {
         self.mark(token);
+        if token.kind == Kind::Name && self.scopes.has_notices() {
+            self.note_use(token);
+        }
         match token.kind {
             Kind::LeftBrace => self.open_braces += 1,
             Kind::RightBrace => self.open_braces = self.open_braces.saturating_sub(1),
@@ -163,6 +166,28 @@ impl Parser<'_> {
         }
         self.steps += 1;
         self.check_steps()
+    }
+
+    /// Takes a name or key that is not used: one that is only asked for, or that names an entry of a dictionary.
+    pub(crate) fn take_unused(&mut self, token: Token) {
+        self.mark(token);
+        self.pass(1);
+    }
+
+    /// Warns of the use of a deprecated name, which was just taken.
+    #[inline(never)]
+    fn note_use(&mut self, token: Token) {
+        let Some(symbol) = token.symbol() else {
+            return;
+        };
+        if let Some(text) = self.scopes.notice(symbol) {
+            let name = report::shortened(self.symbols.text(symbol));
+            let message = match text.trim() {
+                "" => format!("`{name}` is deprecated: its author advises against using it"),
+                text => format!("`{name}` is deprecated: {text}"),
+            };
+            self.warn(self.place, message);
+        }
     }
 
     /// Counts operations of functions as steps.

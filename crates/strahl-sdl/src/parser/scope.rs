@@ -33,9 +33,20 @@ enum Bound {
     Alias(Target),
 }
 
+/// What users of a deprecated name are told.
+#[derive(Clone, Debug)]
+pub(crate) struct Notice {
+    /// The author's words; may be empty.
+    pub(crate) text: Arc<str>,
+    /// Whether only the first use is noted.
+    pub(crate) once: bool,
+}
+
 #[derive(Debug)]
 struct Binding {
     depth: u32,
+    /// The number of its notice, from 1 on; 0 without one.
+    notice: u32,
     bound: Bound,
 }
 
@@ -47,6 +58,8 @@ pub(crate) struct Scopes {
     declared: Vec<Symbol>,
     /// The beginning of each scope in `declared`.
     begins: Vec<usize>,
+    /// The notices of deprecated names.
+    notices: Vec<Notice>,
 }
 
 impl Scopes {
@@ -80,6 +93,44 @@ impl Scopes {
             Bound::Value(value) => Some(value),
             Bound::Alias(target) => self.at(target),
         }
+    }
+
+    /// The value of a name whose uses need no notice.
+    #[inline]
+    pub(crate) fn find_plain(&self, symbol: Symbol) -> Option<&Value> {
+        let binding = self.bindings.get(symbol.index())?.last()?;
+        match &binding.bound {
+            Bound::Value(value) if binding.notice == 0 => Some(value),
+            Bound::Value(_) => None,
+            Bound::Alias(target) => self.at(target),
+        }
+    }
+
+    /// Whether any name was declared as deprecated.
+    #[inline]
+    pub(crate) fn has_notices(&self) -> bool {
+        !self.notices.is_empty()
+    }
+
+    /// Makes the name at a location deprecated.
+    pub(crate) fn deprecate(&mut self, target: &Target, notice: Notice) {
+        let stack = self.bindings.get_mut(target.symbol.index());
+        let stack = stack.into_iter().flatten();
+        for binding in stack.filter(|b| b.depth == target.depth) {
+            self.notices.push(notice.clone());
+            binding.notice = self.notices.len() as u32;
+        }
+    }
+
+    /// The notice for a use of a name; with `once` for the first use only.
+    pub(crate) fn notice(&mut self, symbol: Symbol) -> Option<Arc<str>> {
+        let binding = self.bindings.get_mut(symbol.index())?.last_mut()?;
+        let number = binding.notice.checked_sub(1)?;
+        let notice = self.notices.get(number as usize)?;
+        if notice.once {
+            binding.notice = 0;
+        }
+        Some(Arc::clone(&notice.text))
     }
 
     /// The macro with this name.
@@ -234,7 +285,12 @@ impl Scopes {
             found => {
                 // Most names are bound once: without this a list would get room for four values.
                 stack.reserve_exact(usize::from(stack.is_empty()));
-                stack.insert(found.map_or(0, |at| at + 1), Binding { depth, bound });
+                let binding = Binding {
+                    depth,
+                    notice: 0,
+                    bound,
+                };
+                stack.insert(found.map_or(0, |at| at + 1), binding);
                 self.remember(symbol, depth);
             }
         }

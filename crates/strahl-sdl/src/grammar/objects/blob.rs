@@ -35,7 +35,16 @@ pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
         let components = std::mem::take(&mut draft.components);
         if components.is_empty() {
             let token = p.peek()?;
-            return Err(p.unexpected(token, "a component of the blob"));
+            let message = format!(
+                "expected a component of the blob, found {}",
+                p.describe(token)
+            );
+            let place = p.place_of(token);
+            return Err(p.fail_hint(
+                place,
+                message,
+                "write at least one `sphere`, `cylinder` or `component` before all other items but `threshold`",
+            ));
         }
         Ok(Blob::try_new(draft.threshold, components).map(|blob| {
             let blob = Arc::new(blob);
@@ -114,11 +123,6 @@ impl Parser<'_> {
                 draft
                     .components
                     .push(BlobComponent::sphere(center, radius, strength));
-            }
-            // These select methods of POV-Ray, and have no effect here.
-            Some(Word::Sturm | Word::Hierarchy) => {
-                self.take(token)?;
-                self.switched()?;
             }
             _ => return Ok(false),
         }

@@ -56,6 +56,17 @@ impl Parser<'_> {
                         }
                         interior.dispersion_samples = count as u16;
                     }
+                    Some(Word::Refraction) => {
+                        // As measured, with any value and in all versions.
+                        p.take(token)?;
+                        let place = p.place_of(token);
+                        p.float()?;
+                        p.warn_hint(
+                            place,
+                            "`refraction` has no effect in an interior",
+                            "`ior` alone refracts; to weaken light in the object, use `fade_distance` and `fade_power`",
+                        );
+                    }
                     _ => return p.skip_item(token, "`interior`"),
                 }
                 Ok(())
