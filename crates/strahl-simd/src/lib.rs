@@ -95,11 +95,15 @@ pub trait Isa: Copy + Send + Sync + 'static {
 
     /// Eight bytes from memory, converted exactly.
     fn load_bytes(self, lanes: &[u8; 8]) -> Self::F32x8;
+    /// Eight integers of sixteen bits from memory, converted exactly.
+    fn load_words(self, lanes: &[u16; 8]) -> Self::F32x8;
 
     /// The same number in all lanes.
     fn splat_f32x16(self, x: f32) -> Self::F32x16;
     /// The first or the second eight of sixteen numbers from memory.
     fn load_half(self, lanes: &Lanes16, half: usize) -> Self::F32x8;
+    /// Sixteen integers of sixteen bits from memory, converted exactly.
+    fn load_words_x16(self, lanes: &[u16; 16]) -> Self::F32x16;
     /// Sixteen numbers from memory.
     fn load_f32x16(self, lanes: &Lanes16) -> Self::F32x16;
     /// `a b + c`, rounded once or twice: for culling only.

@@ -34,6 +34,12 @@ macro_rules! pairs_of_eight {
         }
 
         #[inline(always)]
+        fn load_words_x16(self, lanes: &[u16; 16]) -> Self::F32x16 {
+            let (halves, _) = lanes.as_chunks();
+            [self.load_words(&halves[0]), self.load_words(&halves[1])]
+        }
+
+        #[inline(always)]
         fn mul_add_f32x16(self, a: Self::F32x16, b: Self::F32x16, c: Self::F32x16) -> Self::F32x16 {
             [
                 self.mul_add(a[0], b[0], c[0]),
@@ -226,6 +232,11 @@ macro_rules! lane_by_lane {
 
         #[inline(always)]
         fn load_bytes(self, lanes: &[u8; 8]) -> [f32; 8] {
+            lanes.map(f32::from)
+        }
+
+        #[inline(always)]
+        fn load_words(self, lanes: &[u16; 8]) -> [f32; 8] {
             lanes.map(f32::from)
         }
 

@@ -50,6 +50,11 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
         isa.store_f32(bytes).0,
         [0.0, 1.0, 2.0, 127.0, 128.0, 254.0, 255.0, 17.0]
     );
+    let words = std::array::from_fn(|i| (i * 4369) as u16);
+    assert_eq!(
+        isa.store_f32x16(isa.load_words_x16(&words)).0,
+        words.map(f32::from)
+    );
     let narrow = isa.narrow_f32(isa.load(&[0.1, -1e300, 1e-42, 3.0]));
     let spread = [
         isa.spread::<0>(narrow),

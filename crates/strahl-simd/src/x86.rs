@@ -190,6 +190,16 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn load_words(self, lanes: &[u16; 8]) -> __m256 {
+            // SAFETY: `self` proves AVX2; the eight integers are there, and the load needs no alignment.
+            unsafe {
+                _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(
+                    lanes.as_ptr().cast(),
+                )))
+            }
+        }
+
+        #[inline(always)]
         fn splat(self, x: f64) -> __m256d {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_set1_pd(x) }
@@ -397,6 +407,16 @@ impl Isa for Avx512 {
     fn load_f32x16(self, lanes: &Lanes16) -> __m512 {
         // SAFETY: `self` proves AVX-512; the sixteen floats are there, aligned to 64 bytes by their type.
         unsafe { _mm512_load_ps(lanes.0.as_ptr()) }
+    }
+
+    #[inline(always)]
+    fn load_words_x16(self, lanes: &[u16; 16]) -> __m512 {
+        // SAFETY: `self` proves AVX-512; the sixteen integers are there, and the load needs no alignment.
+        unsafe {
+            _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(
+                lanes.as_ptr().cast(),
+            )))
+        }
     }
 
     #[inline(always)]

@@ -13,32 +13,67 @@ pub(super) struct Grid {
     /// Vertices along z, at least 2.
     depth: u32,
     heights: Box<[u16]>,
-    /// Lowest and highest vertex of blocks of 2 x 2, 4 x 4, ... cells, but not of the one block that is all of the field.
+    /// Blocks of 4 x 4, 16 x 16, ... cells, up to the one block that is all of the field.
     levels: Vec<Level>,
     /// Lowest and highest vertex of all.
     full: [u16; 2],
 }
 
-/// The blocks of one size, in fours: those that make up the same block of the next size.
+/// The blocks of one size.
 #[derive(Debug)]
-struct Level {
-    /// How many fours there are along x.
-    width: u32,
-    fours: Box<[Four]>,
+pub(super) struct Level {
+    /// How many there are along x and along z.
+    pub(super) size: (u32, u32),
+    blocks: Box<[Sixteen]>,
 }
 
-/// Lowest and highest vertex of the four quarters of a block, divided by [`SCALE`], which is exact; quarter `a + 2 b` is the lower (0) or the
-/// upper (1) one along x and along z. Those beyond the edge of the field mean nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Four {
-    pub(super) low: [f32; 4],
-    pub(super) high: [f32; 4],
+impl Level {
+    /// Joins parts, whose number along x and along z and whose ranges are given, sixteen at a time.
+    fn of(parts: (u32, u32), range: impl Fn(u32, u32) -> [u16; 2]) -> Self {
+        let size = (parts.0.div_ceil(4), parts.1.div_ceil(4));
+        let mut blocks = Vec::with_capacity(size.0 as usize * size.1 as usize);
+        for (j, i) in (0..size.1).flat_map(|j| (0..size.0).map(move |i| (j, i))) {
+            let mut block = Sixteen::EMPTY;
+            for b in 0..4.min(parts.1 - 4 * j) {
+                for a in 0..4.min(parts.0 - 4 * i) {
+                    let part = (a + 4 * b) as usize;
+                    [block.low[part], block.high[part]] = range(4 * i + a, 4 * j + b);
+                }
+            }
+            blocks.push(block);
+        }
+        Self {
+            size,
+            blocks: blocks.into(),
+        }
+    }
+
+    #[inline]
+    pub(super) fn block(&self, i: u32, j: u32) -> &Sixteen {
+        &self.blocks[j as usize * self.size.0 as usize + i as usize]
+    }
 }
 
-impl Four {
-    fn set(&mut self, quarter: usize, range: [u16; 2]) {
-        let [low, high] = range.map(|h| f32::from(h) / SCALE as f32);
-        (self.low[quarter], self.high[quarter]) = (low, high);
+/// Lowest and highest vertex of the sixteen parts of a block; part `a + 4 b` is number `a` along x and number `b` along z. Those beyond the edge of
+/// the field have their lowest vertex above the highest.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Sixteen {
+    pub(super) low: [u16; 16],
+    pub(super) high: [u16; 16],
+}
+
+impl Sixteen {
+    const EMPTY: Self = Self {
+        low: [u16::MAX; 16],
+        high: [0; 16],
+    };
+
+    /// Lowest and highest vertex of the block.
+    fn range(&self) -> [u16; 2] {
+        let low = self.low.iter().fold(u16::MAX, |a, b| a.min(*b));
+        let high = self.high.iter().fold(0, |a, b| a.max(*b));
+        [low, high]
     }
 }
 
@@ -53,15 +88,10 @@ pub(super) struct Cell {
 
 impl Cell {
     /// Lowest and highest vertex.
-    pub(super) fn range(&self) -> [u16; 2] {
-        hull(self.heights.map(|h| [h, h]).into_iter())
+    fn range(&self) -> [u16; 2] {
+        let [a, b, c, d] = self.heights;
+        [a.min(b).min(c.min(d)), a.max(b).max(c.max(d))]
     }
-}
-
-fn hull(ranges: impl Iterator<Item = [u16; 2]>) -> [u16; 2] {
-    ranges.fold([u16::MAX, 0], |[low, high], [a, b]| {
-        [low.min(a), high.max(b)]
-    })
 }
 
 impl Grid {
@@ -74,44 +104,13 @@ impl Grid {
             levels: Vec::new(),
             full: [0; 2],
         };
-        let (mut columns, mut rows) = grid.cells();
-        let mut ranges: Vec<[u16; 2]> = Vec::new();
-        while columns > 1 || rows > 1 {
-            let below = (columns, rows);
-            (columns, rows) = (columns.div_ceil(2), rows.div_ceil(2));
-            let cells = ranges.is_empty();
-            let mut fours = Vec::new();
-            let mut hulls = Vec::with_capacity(columns as usize * rows as usize);
-            for (j, i) in (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))) {
-                let (mut four, mut all) = (Four::default(), [u16::MAX, 0]);
-                for quarter in 0..4 {
-                    let (i, j) = (2 * i + quarter % 2, 2 * j + quarter / 2);
-                    if i < below.0 && j < below.1 {
-                        let range = match cells {
-                            true => grid.cell(i, j).range(),
-                            false => ranges[j as usize * below.0 as usize + i as usize],
-                        };
-                        four.set(quarter as usize, range);
-                        all = hull([all, range].into_iter());
-                    }
-                }
-                if !cells {
-                    fours.push(four);
-                }
-                hulls.push(all);
-            }
-            if !cells {
-                grid.levels.push(Level {
-                    width: columns,
-                    fours: fours.into(),
-                });
-            }
-            ranges = hulls;
+        let mut level = Level::of(grid.cells(), |i, j| grid.cell(i, j).range());
+        while level.size != (1, 1) {
+            let next = Level::of(level.size, |i, j| level.block(i, j).range());
+            grid.levels.push(std::mem::replace(&mut level, next));
         }
-        grid.full = match ranges.first() {
-            Some(full) => *full,
-            None => grid.cell(0, 0).range(),
-        };
+        grid.full = level.block(0, 0).range();
+        grid.levels.push(level);
         grid
     }
 
@@ -125,45 +124,9 @@ impl Grid {
         (self.width - 1, self.depth - 1)
     }
 
-    /// How often cells have to be joined, two by two along each axis, until there is one block.
-    pub(super) fn top(&self) -> u32 {
-        let (columns, rows) = self.cells();
-        u32::BITS - (columns.max(rows) - 1).leading_zeros()
-    }
-
-    /// The quarters of a block of `2^level` by `2^level` cells, `level` at least 1: blocks of half the size, or cells.
-    #[inline]
-    pub(super) fn quarters(&self, level: u32, i: u32, j: u32) -> Four {
-        if level > 1 {
-            let level = &self.levels[level as usize - 2];
-            return level.fours[j as usize * level.width as usize + i as usize];
-        }
-        // A cell beyond the edge repeats the last one, so that four are computed without branches.
-        let (columns, rows) = self.cells();
-        let (i, j) = (2 * i, 2 * j);
-        let right = usize::from(i + 1 < columns);
-        let below = if j + 1 < rows { self.width as usize } else { 0 };
-        let first = j as usize * self.width as usize + i as usize;
-        let mut rows = [[0; 3]; 3];
-        for (row, at) in rows
-            .iter_mut()
-            .zip([0, self.width as usize, self.width as usize + below])
-        {
-            let from = &self.heights[first + at..][..2 + right];
-            *row = [from[0], from[1], from[1 + right]];
-        }
-        let mut four = Four::default();
-        for quarter in 0..4 {
-            let (a, b) = (quarter % 2, quarter / 2);
-            let [p, q, r, s] = [
-                rows[b][a],
-                rows[b][a + 1],
-                rows[b + 1][a],
-                rows[b + 1][a + 1],
-            ];
-            four.set(quarter, [p.min(q).min(r.min(s)), p.max(q).max(r.max(s))]);
-        }
-        four
+    /// Blocks from those of 4 x 4 cells up to the one that is all of the field.
+    pub(super) fn levels(&self) -> &[Level] {
+        &self.levels
     }
 
     /// Lowest and highest vertex of all.
