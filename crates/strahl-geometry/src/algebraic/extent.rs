@@ -4,6 +4,9 @@
 //! a polynomial in w, u and v; where that has no zero for `0 <= w <= 1` and `|u|, |v| <= 1`, the surface does not leave the cube of
 //! half-edge R through that face. Both it and the polynomial in the cube are bounded by interval arithmetic on ever smaller
 //! cells (R. E. Moore, Interval Analysis, 1966).
+//!
+//! Where the terms of the highest degree vanish in some direction, as those of `x⁴ - x² + y² + z²` do in all of `x = 0`, the sum of three polynomials
+//! of one coordinate each may tell that the surface is closed ([`Separate`]).
 
 use super::terms::Terms;
 use strahl_math::error::gamma;
@@ -40,7 +43,9 @@ pub(super) fn extent(terms: &Terms, sums: &[f64]) -> Option<Aabb> {
     }
     let half = CUBES
         .into_iter()
-        .find(|half| is_closed(&list, degree, *half))?;
+        .find(|half| is_closed(&list, degree, *half))
+        .or_else(|| Separate::of(&list, 1.0).half_edge())
+        .or_else(|| Separate::of(&list, -1.0).half_edge())?;
     let inside = Inside {
         terms: &list,
         degree,
@@ -133,6 +138,83 @@ impl Face<'_> {
         }
         side
     }
+}
+
+/// A sum that a polynomial is never below: of a constant and a polynomial in the magnitude of each coordinate.
+///
+/// A term of several coordinates is not negative if all its powers are even, or it is weighed by `|xⁱ yʲ zᵏ| <= (i |x|ⁿ + j |y|ⁿ + k |z|ⁿ) / n` with
+/// `n = i + j + k` (the inequality of arithmetic and geometric means).
+struct Separate {
+    constant: f64,
+    /// For each coordinate, by rising powers; those of power 0 are zero.
+    axes: [[f64; HIGHEST_DEGREE as usize + 1]; 3],
+}
+
+impl Separate {
+    /// Below the polynomial times `sign`.
+    fn of(terms: &[([u32; 3], f64)], sign: f64) -> Self {
+        let mut sum = Self {
+            constant: 0.0,
+            axes: [[0.0; HIGHEST_DEGREE as usize + 1]; 3],
+        };
+        for (powers, c) in terms {
+            let c = c * sign;
+            let degree: u32 = powers.iter().sum();
+            if degree == 0 {
+                sum.constant += c;
+                continue;
+            }
+            let is_even = powers.iter().all(|power| power % 2 == 0);
+            let is_pure = powers.contains(&degree);
+            if is_even && c >= 0.0 && !is_pure {
+                continue;
+            }
+            let least = if is_even && c >= 0.0 { c } else { -c.abs() };
+            for (axis, power) in sum.axes.iter_mut().zip(powers) {
+                axis[degree as usize] += least * f64::from(*power) / f64::from(degree);
+            }
+        }
+        sum
+    }
+
+    /// The half-edge of a cube outside of which the sum is positive; `None` if there is none.
+    fn half_edge(&self) -> Option<f64> {
+        let mut least = [0.0; 3];
+        for (least, axis) in least.iter_mut().zip(&self.axes) {
+            // Beyond this place it is not negative, and before it not below the sum of its negative terms there.
+            let place = last_zero(axis, 0.0)?;
+            let negative = |(k, c): (usize, &f64)| power(place, k as u32) * c.min(0.0);
+            *least = axis.iter().enumerate().map(negative).sum();
+        }
+        let all: f64 = least.iter().sum::<f64>() + self.constant;
+        let mut half: f64 = 0.0;
+        for (least, axis) in least.iter().zip(&self.axes) {
+            half = half.max(last_zero(axis, all - least)?);
+        }
+        // Room for rounding; and no cube without a size.
+        Some(if half > 0.0 { 2.0 * half } else { 1.0 }).filter(|half| half.is_finite())
+    }
+}
+
+/// A place beyond which a polynomial in one variable, plus a constant, is not negative: there the leading term outweighs the negative ones, each of
+/// them with an equal part of itself. `None` if the leading coefficient is not positive.
+fn last_zero(coefficients: &[f64], constant: f64) -> Option<f64> {
+    let (top, leading) = coefficients
+        .iter()
+        .enumerate()
+        .rfind(|(_, c)| **c != 0.0)
+        .filter(|(_, c)| **c > 0.0)?;
+    let lower = || (coefficients.iter().enumerate().take(top)).filter(|(_, c)| **c < 0.0);
+    let negative = lower().map(|(k, c)| (k, *c));
+    let negative = negative.chain((constant < 0.0).then_some((0, constant)));
+    let parts = lower().count() as f64 + 1.0;
+    negative
+        .map(|(k, c)| {
+            let below = (top - k) as f64;
+            strahl_math::det::pow(parts * -c / leading, 1.0 / below)
+        })
+        .reduce(f64::max)
+        .or(Some(0.0))
 }
 
 /// The polynomial itself.

@@ -14,8 +14,9 @@ use strahl_math::{Aabb, DVec3, Interval, Ray};
 /// An algebraic surface: where a polynomial in x, y and z of degree 1 to 35 vanishes; inside is where it is not positive.
 ///
 /// POV-Ray's `cubic`, `quartic`, `poly` and `polynomial`. Changing all signs turns the inside out. A surface that is closed because the
-/// terms of the highest degree have one sign everywhere, as those of a torus, has a box around it; any other is unbounded as far as its box goes, whatever its
-/// shape: put it into an intersection or clip it. It has no texture coordinates (`uv` and its
+/// terms of the highest degree have one sign everywhere, as those of a torus, or because the powers of single coordinates outweigh the others far away,
+/// has a box around it; any other is unbounded as far as its box goes, whatever its shape: put it into an intersection or clip it. It
+/// has no texture coordinates (`uv` and its
 /// derivatives are zero). Facets: one, 0. A ray that touches the surface without passing through does not hit it.
 ///
 /// The polynomial is restricted to the ray, about the point of the ray that is nearest to the origin, and its roots are isolated on
@@ -606,15 +607,9 @@ mod tests {
         ]);
         assert!(inverse.bounds().is_bounded() && !inverse.inside_bounds().is_bounded());
         let open = [
-            // A cylinder, a saddle, and one that is closed but not by its terms of degree four.
+            // A cylinder, a saddle, and one that is open on one side.
             Polynomial::new([([4, 0, 0], 1.0), ([0, 4, 0], 1.0), ([0, 0, 0], -1.0)]),
             Polynomial::new([([2, 0, 0], 1.0), ([0, 2, 0], -1.0), ([0, 0, 1], -1.0)]),
-            Polynomial::new([
-                ([4, 0, 0], 1.0),
-                ([0, 2, 0], 1.0),
-                ([0, 0, 2], 1.0),
-                ([0, 0, 0], -1.0),
-            ]),
             Polynomial::new([([3, 0, 0], 1.0), ([0, 2, 0], 1.0), ([0, 0, 2], 1.0)]),
         ];
         for shape in open {
@@ -630,6 +625,62 @@ mod tests {
         assert!(empty.bounds().max_abs() < 1e-9);
     }
 
+    /// Surfaces that are closed although their terms of the highest degree vanish in some direction: with the corner of the true box.
+    #[test]
+    fn terms_of_lower_degrees_close_surfaces() {
+        for (terms, corner) in [
+            // The lemniscate of Gerono, turned about its axis: x⁴ - x² + y² + z².
+            (
+                vec![
+                    ([4, 0, 0], 1.0),
+                    ([2, 0, 0], -1.0),
+                    ([0, 2, 0], 1.0),
+                    ([0, 0, 2], 1.0),
+                ],
+                DVec3::new(1.0, 0.5, 0.5),
+            ),
+            // Inside out, and with a mixed term that is nowhere negative.
+            (
+                vec![
+                    ([4, 0, 0], -16.0),
+                    ([2, 2, 0], -1.0),
+                    ([0, 2, 0], -1.0),
+                    ([0, 0, 2], -4.0),
+                    ([0, 0, 0], 1.0),
+                ],
+                DVec3::new(0.5, 1.0, 0.5),
+            ),
+            // A mixed term that is outweighed: x² + xy + y² + z⁴ = 1.
+            (
+                vec![
+                    ([2, 0, 0], 1.0),
+                    ([1, 1, 0], 1.0),
+                    ([0, 2, 0], 1.0),
+                    ([0, 0, 4], 1.0),
+                    ([0, 0, 0], -1.0),
+                ],
+                DVec3::new(1.1547, 1.1547, 1.0),
+            ),
+        ] {
+            let bounds = Polynomial::new(terms).bounds();
+            let wider = corner * 1.4;
+            assert!(bounds.contains(corner * (1.0 - 1e-5)), "{bounds:?}");
+            assert!(bounds.contains(-corner * (1.0 - 1e-5)), "{bounds:?}");
+            assert!(
+                bounds.max.cmplt(wider).all() && bounds.min.cmpgt(-wider).all(),
+                "{bounds:?}"
+            );
+        }
+        // The mixed term outweighs: a hyperbola.
+        let open = [
+            ([2, 0, 0], 1.0),
+            ([1, 1, 0], 3.0),
+            ([0, 2, 0], 1.0),
+            ([0, 0, 4], 1.0),
+        ];
+        assert!(!Polynomial::new(open).bounds().is_bounded());
+    }
+
     /// Whatever rays hit is in the box, also of surfaces made at random.
     #[test]
     fn rays_hit_nothing_outside_of_the_box() {
@@ -639,9 +690,12 @@ mod tests {
             let n = 2 + 2 * (case % 3);
             let size = strahl_math::det::pow(10.0, random.between(-3.0, 3.0));
             let unit = |power: u32| (0..power).fold(1.0, |product, _| product / size);
-            let ends = [[n, 0, 0], [0, n, 0], [0, 0, n]];
-            let mut terms: Vec<([u32; 3], f64)> =
-                ends.map(|p| (p, random.between(0.5, 2.0) * unit(n))).into();
+            // In half of them the last power is 2, so that the terms of the highest degree do not close them.
+            let last = if case % 2 == 0 { n } else { 2 };
+            let ends = [([n, 0, 0], n), ([0, n, 0], n), ([0, 0, last], last)];
+            let mut terms: Vec<([u32; 3], f64)> = ends
+                .map(|(p, power)| (p, random.between(0.5, 2.0) * unit(power)))
+                .into();
             for _ in 0..8 {
                 let p = [0, 1, 2].map(|_| random.below(u64::from(n / 2)) as u32);
                 let degree = p[0] + p[1] + p[2];

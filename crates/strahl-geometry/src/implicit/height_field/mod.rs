@@ -143,6 +143,23 @@ impl HeightField {
     }
 }
 
+/// Which triangles of a cell the line of a ray meets, from the images of the corners: the comparisons of [`intersect_sheared`], with those of the
+/// common edge made once.
+#[inline(always)]
+fn met([a, b, c, d]: &[DVec3; 4]) -> [bool; 2] {
+    // Whether the ray passes an edge on one side or on it, and on the other side or on it.
+    let sides = |from: &DVec3, to: &DVec3| {
+        let (p, q) = (from.x * to.y, from.y * to.x);
+        (p >= q, p <= q)
+    };
+    let (bc, ca, ab) = (sides(b, c), sides(c, a), sides(a, b));
+    let (bd, dc) = (sides(b, d), sides(d, c));
+    [
+        bc.0 & ca.0 & ab.0 | bc.1 & ca.1 & ab.1,
+        bc.1 & bd.0 & dc.0 | bc.0 & bd.1 & dc.1,
+    ]
+}
+
 impl Surface {
     /// The number of triangles.
     fn triangles(&self) -> u32 {
@@ -168,7 +185,13 @@ impl Surface {
             let corners = self.grid.corners(cell);
             let images = corners.map(|p| shear.apply(&p));
             let first = 2 * (cell.j * columns + cell.i);
-            for (element, [a, b, c]) in [(first, [0, 1, 2]), (first + 1, [3, 2, 1])] {
+            let [lower, upper] = met(&images);
+            for (is_met, element, [a, b, c]) in
+                [(lower, first, [0, 1, 2]), (upper, first + 1, [3, 2, 1])]
+            {
+                if !is_met {
+                    continue;
+                }
                 let Some(hit) = intersect_sheared(&shear, images[a], images[b], images[c]) else {
                     continue;
                 };
