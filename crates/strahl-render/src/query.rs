@@ -316,6 +316,6 @@ impl<Q: Query> Search<'_, '_, Q> {
 impl RenderScene {
     /// Whether the material of an element transmits light.
     pub(crate) fn transmits(&self, appearance: crate::appearance::Appearance) -> bool {
-        crate::compile::material_transmits(&self.materials[appearance.material.0 as usize])
+        self.transmitting[appearance.material.0 as usize]
     }
 }

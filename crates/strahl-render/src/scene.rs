@@ -78,6 +78,8 @@ pub struct RenderScene {
     pub(crate) groups: Arc<[RenderGroup]>,
     pub(crate) objects: Arc<Objects>,
     pub(crate) materials: Arc<[Arc<Material>]>,
+    /// Whether shadow rays pass through each material.
+    pub(crate) transmitting: Box<[bool]>,
     /// Whether each of them uses texture coordinates.
     pub(crate) uses_uv: Arc<[bool]>,
     /// Transforms from texture space to the group's space.

@@ -111,6 +111,22 @@ impl ImageMap {
         }
     }
 
+    /// Whether it may be transparent somewhere: `false` is certain, `true` is not.
+    pub fn may_transmit(&self) -> bool {
+        let ends = self.once && matches!(self.map_type, MapType::Planar | MapType::Cylindrical);
+        if ends || self.filter_all != 0.0 || self.transmit_all != 0.0 {
+            return true;
+        }
+        let Some(palette) = &self.palette else {
+            return !self.image.is_opaque();
+        };
+        let passes = |entry: &[f64; 2]| *entry != [0.0; 2];
+        let is_used = |index: &u8| palette.entries.get(usize::from(*index)).is_some_and(passes);
+        // A texel without an entry has the alpha of the image.
+        !self.image.is_opaque()
+            || palette.entries.iter().any(passes) && palette.indices.iter().any(is_used)
+    }
+
     /// The colour at a point; `None` outside of an image with `once`.
     pub fn color(&self, p: DVec3) -> Option<ColorFt> {
         let [r, g, b, a, filter] = self.sample(p)?;
@@ -293,6 +309,41 @@ mod tests {
         [-1.964, 1.915, 1.308],
         [1.141, -1.808, -1.17],
     ];
+
+    #[test]
+    fn a_map_may_transmit_where_a_texel_does_or_none_is() {
+        let with_alpha = |alpha: [u8; 2]| {
+            let [a, b] = alpha;
+            let data = TexelData::U8(vec![9, 9, 9, a, 7, 7, 7, b]);
+            let image = TextureImage::try_new(2, 1, TexelChannels::Rgba, ColorSpace::Linear, data);
+            ImageMap::new(Arc::new(image.expect("2 x 1 texels")))
+        };
+        let opaque = with_alpha([255, 255]);
+        assert!(!opaque.may_transmit() && !ImageMap::new(picture()).may_transmit());
+        assert!(with_alpha([255, 254]).may_transmit());
+        let changed = |change: &dyn Fn(&mut ImageMap)| {
+            let mut map = opaque.clone();
+            change(&mut map);
+            map.may_transmit()
+        };
+        assert!(changed(&|map| map.filter_all = 0.1));
+        assert!(changed(&|map| map.transmit_all = 0.1));
+        assert!(changed(&|map| map.once = true));
+        // A sphere has no place beside the image.
+        assert!(!changed(
+            &|map| (map.once, map.map_type) = (true, MapType::Spherical)
+        ));
+        let palette = |indices: [u8; 2]| {
+            changed(&|map| {
+                map.palette = Some(Arc::new(PaletteTransparency {
+                    indices: indices.into(),
+                    entries: vec![[0.0, 0.0], [0.0, 0.5], [0.0, 0.0]],
+                }));
+            })
+        };
+        // The entry that transmits is used, or not.
+        assert!(palette([0, 1]) && !palette([0, 2]));
+    }
 
     /// Red, as POV-Ray 3.7.0.10 gives it.
     #[test]

@@ -51,6 +51,11 @@ impl TexelChannels {
             Self::Rgba => 4,
         }
     }
+
+    /// Whether the last of them is alpha.
+    const fn have_alpha(self) -> bool {
+        matches!(self, Self::GrayAlpha | Self::Rgba)
+    }
 }
 
 /// The samples of a picture, row by row from the top left, texel by texel.
@@ -135,6 +140,8 @@ pub struct TextureImage {
     channels: TexelChannels,
     color_space: ColorSpace,
     data: TexelData,
+    /// Whether all texels have an alpha of 1.
+    opaque: bool,
 }
 
 impl TextureImage {
@@ -156,13 +163,34 @@ impl TextureImage {
                 samples: data.len(),
             });
         }
-        Ok(Self {
+        let mut image = Self {
             width,
             height,
             channels,
             color_space,
             data,
-        })
+            opaque: true,
+        };
+        image.opaque = image.has_only_opaque_texels();
+        Ok(image)
+    }
+
+    /// Whether all texels have an alpha of 1.
+    pub fn is_opaque(&self) -> bool {
+        self.opaque
+    }
+
+    fn has_only_opaque_texels(&self) -> bool {
+        let count = self.channels.count();
+        if !self.channels.have_alpha() {
+            return true;
+        }
+        let mut alphas = (count - 1..self.data.len()).step_by(count);
+        match &self.data {
+            TexelData::U8(samples) => alphas.all(|i| samples[i] == u8::MAX),
+            TexelData::U16(samples) => alphas.all(|i| samples[i] == u16::MAX),
+            TexelData::F32(samples) => alphas.all(|i| samples[i] == 1.0),
+        }
     }
 
     /// Columns; at least one.
@@ -207,10 +235,7 @@ impl TextureImage {
             TexelData::F32(_) => Vec::new(),
         };
         let count = self.channels.count();
-        let has_alpha = matches!(
-            self.channels,
-            TexelChannels::GrayAlpha | TexelChannels::Rgba
-        );
+        let has_alpha = self.channels.have_alpha();
         let sample = |index: usize| {
             if has_alpha && index % count == count - 1 {
                 return self.linear_sample(index);

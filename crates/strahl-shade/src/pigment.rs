@@ -113,7 +113,7 @@ impl Pigment {
             Self::ColorMap(_, map) => map.entries.iter().any(|(_, c)| passes(c)),
             Self::PigmentMap(_, map) => map.entries.iter().any(|(_, p)| p.may_transmit()),
             Self::Blocks(_, pigments) => pigments.iter().any(Self::may_transmit),
-            Self::Image(..) => true,
+            Self::Image(image, _) => image.may_transmit(),
             Self::Average(members, _) => members.iter().any(|(_, p)| p.may_transmit()),
             Self::UvMapped(pigment) | Self::Quick(_, pigment) => pigment.may_transmit(),
         }

@@ -1,6 +1,6 @@
 use super::bounds::{Bound, bounded};
 use super::inherit::Todo;
-use super::materials::{MaterialTable, material_fills, material_problem, material_transmits};
+use super::materials::{MaterialTable, material_fills, material_problem};
 use super::operation::wrong_count;
 use crate::appearance::{Appearance, Appearances, UvMapping};
 use crate::hit::RayClass;
@@ -334,12 +334,12 @@ impl Pass {
     }
 
     pub(super) fn flags(&self, todo: &Todo<'_>, material: MaterialId) -> u8 {
-        let material = self.flat.materials.get(material);
-        let light = if material_transmits(material) {
+        let light = if self.flat.materials.transmits(material) {
             Prim::TRANSMITS
         } else {
             Prim::STOPS
         };
+        let material = self.flat.materials.get(material);
         let sides = match material.sides {
             Sides::Front => Prim::ONE_SIDED,
             Sides::Two => 0,

@@ -8,6 +8,8 @@ use strahl_shade::{Material, MaterialId, Quality};
 #[derive(Debug, Default)]
 pub(super) struct MaterialTable {
     list: Vec<Arc<Material>>,
+    /// Whether shadow rays pass through each of them.
+    transmitting: Vec<bool>,
     known: HashMap<*const Material, MaterialId>,
     default: Option<Arc<Material>>,
     quality: Quality,
@@ -35,7 +37,7 @@ impl MaterialTable {
                 .default
                 .get_or_insert_with(|| Arc::new(Material::default().named("default"))),
         };
-        let (list, quality) = (&mut self.list, self.quality);
+        let (list, transmitting, quality) = (&mut self.list, &mut self.transmitting, self.quality);
         let (textures, replaced) = (&mut self.textures, &mut self.replaced);
         *self.known.entry(Arc::as_ptr(material)).or_insert_with(|| {
             let other = material.of_quality(quality, |texture| {
@@ -44,13 +46,15 @@ impl MaterialTable {
                     .or_insert_with(|| texture.of_quality(quality).map(Arc::new))
                     .clone()
             });
-            list.push(match other {
+            let shown = match other {
                 None => Arc::clone(material),
                 Some(other) => {
                     replaced.push(Arc::clone(material));
                     Arc::new(other)
                 }
-            });
+            };
+            transmitting.push(material_transmits(&shown));
+            list.push(shown);
             MaterialId(list.len() as u32 - 1)
         })
     }
@@ -59,13 +63,19 @@ impl MaterialTable {
         &self.list[id.0 as usize]
     }
 
-    pub(super) fn into_list(self) -> Vec<Arc<Material>> {
-        self.list
+    /// Whether shadow rays pass through a material.
+    pub(super) fn transmits(&self, id: MaterialId) -> bool {
+        self.transmitting[id.0 as usize]
+    }
+
+    /// The materials, and whether shadow rays pass through each of them.
+    pub(super) fn into_lists(self) -> (Vec<Arc<Material>>, Vec<bool>) {
+        (self.list, self.transmitting)
     }
 }
 
 /// Whether shadow rays pass through the material.
-pub(crate) fn material_transmits(material: &Material) -> bool {
+fn material_transmits(material: &Material) -> bool {
     if let Some(texture) = &material.texture {
         let inner = material.inner_texture.as_ref();
         return texture.0.may_transmit() || inner.is_some_and(|t| t.0.may_transmit());

@@ -27,7 +27,6 @@ use crate::prim::{Prim, PrimKind};
 use crate::scene::{Part, RenderGroup, RenderScene};
 use crate::uses::InstanceUse;
 use assemble::Assembled;
-pub(crate) use materials::material_transmits;
 use shapes::{Flagged, GroupShapes};
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AcceleratorKind, AnyAccelerator};
@@ -52,6 +51,8 @@ pub struct Prepared {
     groups: Vec<Assembled>,
     objects: Objects,
     materials: Vec<Arc<Material>>,
+    /// Whether shadow rays pass through each of them.
+    transmitting: Vec<bool>,
     texture_spaces: Vec<Transform>,
     lights: Vec<SceneLight>,
     light_sets: LightSets,
@@ -124,10 +125,12 @@ impl Prepared {
             Some(background) => background.of_quality(quality),
             None => view::background(scene, &camera),
         };
+        let (materials, transmitting) = flat.materials.into_lists();
         Ok(Self {
             groups,
             objects: flat.objects.completed(),
-            materials: flat.materials.into_list(),
+            materials,
+            transmitting,
             texture_spaces: flat.texture_spaces,
             lights,
             light_sets,
@@ -180,7 +183,6 @@ impl Prepared {
         });
         let air = !self.fogs.is_empty() || !self.rainbows.is_empty();
         let shows = |m: &Arc<Material>| materials::material_shows(m);
-        let transmits = self.materials.iter().any(|m| material_transmits(m));
         let disperses = |m: &Arc<Material>| m.interior.as_ref().is_some_and(|i| i.disperses());
         RenderScene {
             disperses: self.materials.iter().any(disperses),
@@ -202,7 +204,8 @@ impl Prepared {
             camera: self.camera,
             settings: self.settings,
             sources: self.sources,
-            transmits,
+            transmits: self.transmitting.contains(&true),
+            transmitting: self.transmitting.into(),
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, Surfac
 use body::Body;
 use grid::{Cell, Grid, SCALE};
 use smooth::Normals;
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
@@ -233,6 +234,20 @@ impl Surface {
         found
     }
 
+    /// All hits, ascending; of several at one place that on the first triangle.
+    fn all_hits(&self, ray: &Ray, range: Interval, skip: Option<u32>, out: &mut Vec<PrimHit>) {
+        let before = out.len();
+        self.visit_hits(ray, range, skip, |_, hit| {
+            out.push(hit);
+            ControlFlow::Continue(())
+        });
+        let place = |hit: &PrimHit| (hit.t, hit.surface.element);
+        let mut sorted = out.split_off(before);
+        sorted.sort_unstable_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
+        sorted.dedup_by(|next, first| next.t == first.t);
+        out.append(&mut sorted);
+    }
+
     /// Corners of a triangle as vertex numbers: the one at the right angle, then its neighbours along x and z.
     fn triangle(&self, element: u32) -> [(u32, u32); 3] {
         let columns = self.grid.cells().0;
@@ -329,6 +344,18 @@ impl Primitive for HeightField {
     ) -> bool {
         let skip = from.map(|surface| surface.element);
         self.body.0.any_hit(ray, range, skip)
+    }
+
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        let skip = from.map(|surface| surface.element);
+        self.body.0.all_hits(ray, range, skip, out);
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
