@@ -296,6 +296,12 @@ pub trait Solid: Primitive {
         self.bounds()
     }
 
+    /// The side of the surface that all of a box certainly lies on: `true` inside, `false` outside, with no surface in it. `None` if that is not
+    /// known, as by default.
+    fn side_of(&self, _cell: &Aabb) -> Option<bool> {
+        None
+    }
+
     /// Appends all crossings of the surface with `range.min < t <= range.max`, ascending in `t`, and sets
     /// [`Crossings::inside_at_start`] to whether the ray just behind `range.min` is inside.
     ///

@@ -58,6 +58,8 @@ impl Prim {
     pub(crate) const FILLED: u8 = 32;
     /// Each hit must be checked, or it depends on the element whether it transmits light. Set by [`Prim::new`].
     const CHECKED: u8 = 64;
+    /// A tree of both kinds, whose surfaces shadow rays look at together: finding the opaque ones first takes as long as finding all.
+    pub(crate) const TOGETHER: u8 = 128;
 
     pub(crate) const fn new(kind: PrimKind, visible: u8, flags: u8) -> Self {
         let (tag, index, triangle) = match kind {

@@ -204,6 +204,9 @@ impl Intersector<'_> {
                 filter,
                 absorbed,
             });
+            if visible.is_black() {
+                return Shadow { visible, hit: true };
+            }
             entered_at = hit.t;
             inside = if leaves {
                 arena.left(inside, own.body)

@@ -3,7 +3,7 @@ use super::half_spaces::{HalfSpace, HalfSpaces};
 use super::leaf::{Leaf, Next, Placement};
 use super::node::{Kind, NO_PARENT, Node};
 use super::sweep::Rule;
-use super::tighten::{Form, tightened};
+use super::tighten::{Region, tightened};
 use super::tree::{CsgNode, Operands};
 use crate::{GeometryError, Primitive, Shape};
 use std::cmp::Ordering;
@@ -13,6 +13,9 @@ use strahl_math::{Aabb, Transform};
 
 /// Up to this many operands the boxes are tested one by one.
 const LIST_MAX: usize = 8;
+
+/// So many operands at most are looked at to make the box around an intersection smaller.
+const MOST_REGIONS: usize = 16;
 
 impl Csg {
     /// Compiles a tree.
@@ -363,24 +366,18 @@ impl Compiler {
         }
     }
 
-    /// The forms that contain the nodes, if several of them are needed for a common bound and one is curved.
-    fn forms(&self, nodes: &[u32]) -> Vec<Form> {
+    /// What the nodes leave of space, if several of them together may leave less than a box around one of them.
+    fn regions(&self, nodes: &[u32]) -> Vec<Region<'_>> {
         let leaf = |node: &u32| match self.nodes.get(*node as usize)?.kind {
             Kind::Leaf(index) => self.leaves.get(index as usize),
             Kind::Operation(_) => None,
         };
-        let forms: Vec<Form> = nodes.iter().filter_map(|n| Form::of(leaf(n)?)).collect();
-        let positive = nodes
-            .iter()
-            .filter(|n| leaf(n).is_none_or(|leaf| !leaf.negative));
-        let curved = nodes
-            .iter()
-            .filter_map(leaf)
-            .any(|l| !matches!(l.shape, Shape::Plane(_)));
-        match curved && positive.count() > 1 {
-            true => forms,
-            false => vec![],
+        let is_curved = |leaf: &Leaf| !matches!(leaf.shape, Shape::Plane(_));
+        if nodes.len() < 2 || !nodes.iter().filter_map(leaf).any(is_curved) {
+            return vec![];
         }
+        let regions = nodes.iter().filter_map(|node| Region::of(leaf(node)?));
+        regions.take(MOST_REGIONS).collect()
     }
 
     /// The half-spaces among the nodes.
@@ -417,7 +414,7 @@ impl Compiler {
                                 b.intersection(other)
                             });
                         match rule {
-                            Rule::Intersection => tightened(&common, &self.forms(&node.operands)),
+                            Rule::Intersection => tightened(&common, &self.regions(&node.operands)),
                             _ => common,
                         }
                     } else {

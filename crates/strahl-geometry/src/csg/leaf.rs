@@ -84,6 +84,16 @@ impl Leaf {
         self.placement.as_ref().map(|placement| &placement.map)
     }
 
+    pub(super) fn point_to_object(&self, point: DVec3) -> DVec3 {
+        self.map().map_or(point, |map| map.point_to_object(point))
+    }
+
+    /// A box around the image of a box in the shape's space.
+    pub(super) fn bounds_to_object(&self, bounds: &Aabb) -> Aabb {
+        let back = self.placement.as_ref().map(|placement| &placement.back);
+        back.map_or(*bounds, |back| back.bounds_to_world(bounds))
+    }
+
     pub(super) fn ray_to_object(&self, ray: &Ray) -> Ray {
         self.placement
             .as_ref()
@@ -93,10 +103,7 @@ impl Leaf {
     /// Whether the tree's space at `point` belongs to what this leaf contributes: the shape or its complement.
     pub(super) fn contains(&self, point: DVec3) -> bool {
         let inside = || {
-            let local = self
-                .placement
-                .as_ref()
-                .map_or(point, |placement| placement.map.point_to_object(point));
+            let local = self.point_to_object(point);
             self.solid().is_some_and(|solid| solid.contains(local))
         };
         (self.bounds.contains(point) && inside()) != self.negative

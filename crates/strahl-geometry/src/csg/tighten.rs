@@ -1,18 +1,29 @@
 //! Tighter boxes around intersections of curved and flat parts.
 //!
 //! An infinite cylinder and two planes are unbounded, but their intersection is bounded. For every part that is a polynomial of
-//! degree at most 2 (planes, spheres, quadrics, the sides of cylinders and cones) one can test whether a box is certainly outside
-//! of it. Such boxes are cut off from each of the six sides by bisection: the bounds begin at the first box along an axis for
+//! degree at most 2 (planes, spheres, quadrics, the sides of cylinders and cones), and for tori and blobs, one can test whether a box is certainly
+//! outside of it; and for convex parts that are subtracted, whether it is certainly inside. Such boxes are cut off from each of the six sides by bisection: the bounds begin at the first box along an axis for
 //! which no test succeeds (branch and bound; Ratschek and Rokne 1988).
 
 use super::leaf::Leaf;
-use crate::Shape;
+use crate::{Shape, Solid};
 use strahl_math::{Aabb, DVec3, Transform};
 
 /// A quadratic form of four variables: `pᵀ M p` with `p = (x, y, z, w)`. A point is inside of the part where the form is not
 /// positive, with `w = 1`; points with `w = 0` are infinitely far away.
 #[derive(Clone, Debug)]
 pub(super) struct Form([[f64; 4]; 4]);
+
+/// What an operand of an intersection leaves of space.
+#[derive(Debug)]
+pub(super) enum Region<'a> {
+    /// What is inside of a form.
+    Form(Form),
+    /// What is inside of a leaf that knows on which side of it boxes are, or outside of it if it is subtracted.
+    Sided(&'a Leaf, &'a dyn Solid),
+    /// What is outside of a convex leaf.
+    Outside(&'a Leaf, &'a dyn Solid),
+}
 
 /// A box in the four variables: centre and half widths.
 #[derive(Clone, Copy)]
@@ -31,6 +42,44 @@ const ROUNDS: u32 = 6;
 const FAR_BUDGET: u32 = 256;
 /// The size of the smallest boxes, relative to the bounds found so far.
 const FINE: f64 = 1.0 / 64.0;
+
+impl<'a> Region<'a> {
+    /// `None` where no box is known to be without it.
+    pub(super) fn of(leaf: &'a Leaf) -> Option<Self> {
+        let solid = leaf.solid()?;
+        match leaf.shape {
+            Shape::Torus(_) | Shape::Blob(_) => Some(Self::Sided(leaf, solid)),
+            _ if leaf.negative => leaf.is_convex().then_some(Self::Outside(leaf, solid)),
+            _ => Form::of(leaf).map(Self::Form),
+        }
+    }
+
+    /// Whether nothing of it is in a cell.
+    fn excludes(&self, cell: &Cell) -> bool {
+        match self {
+            Self::Form(form) => form.excludes(cell),
+            Self::Sided(leaf, solid) => cell.bounds().is_some_and(|bounds| {
+                let local = leaf.bounds_to_object(&bounds);
+                solid.side_of(&local) == Some(leaf.negative)
+            }),
+            Self::Outside(leaf, solid) => cell.bounds().is_some_and(|bounds| {
+                let inside = |corner| solid.contains(leaf.point_to_object(corner));
+                bounds.corners().into_iter().all(inside)
+            }),
+        }
+    }
+
+    /// Whether a point is in it, so that no cell around the point is [excluded](Self::excludes).
+    fn contains(&self, point: &[f64; 4]) -> bool {
+        match self {
+            Self::Form(form) => form.contains(point),
+            Self::Sided(leaf, _) | Self::Outside(leaf, _) => {
+                let [x, y, z, w] = *point;
+                w == 1.0 && leaf.contains(DVec3::new(x, y, z))
+            }
+        }
+    }
+}
 
 impl Form {
     /// The form that contains a leaf's inside (or, if it is open, its surface); `None` for other shapes and for complements.
@@ -253,6 +302,14 @@ impl Cell {
         }
     }
 
+    /// The box, unless it is infinitely far away.
+    fn bounds(&self) -> Option<Aabb> {
+        let [x, y, z, w] = self.center;
+        let ([a, b, c, d], middle) = (self.half, DVec3::new(x, y, z));
+        let half = DVec3::new(a, b, c);
+        (w == 1.0 && d == 0.0).then(|| Aabb::new(middle - half, middle + half))
+    }
+
     /// The two halves along an axis.
     fn bisected(&self, axis: usize) -> [Self; 2] {
         let half = self.half[axis] * 0.5;
@@ -274,14 +331,14 @@ impl Cell {
     }
 }
 
-/// The part of a box that may contain the inside of all forms. It is never larger than the box.
-pub(super) fn tightened(bounds: &Aabb, forms: &[Form]) -> Aabb {
-    if forms.is_empty() || bounds.is_empty() {
+/// The part of a box that may contain what all regions have in common. It is never larger than the box.
+pub(super) fn tightened(bounds: &Aabb, regions: &[Region<'_>]) -> Aabb {
+    if regions.is_empty() || bounds.is_empty() {
         return *bounds;
     }
     let mut result = *bounds;
     if !result.is_bounded() {
-        let Some(reach) = reach(&result, forms) else {
+        let Some(reach) = reach(&result, regions) else {
             return *bounds;
         };
         let all = DVec3::splat(reach);
@@ -289,7 +346,7 @@ pub(super) fn tightened(bounds: &Aabb, forms: &[Form]) -> Aabb {
     }
     for _ in 0..ROUNDS {
         let before = result.half_area();
-        result = cut(result, forms);
+        result = cut(result, regions);
         if !(result.half_area() < 0.8 * before) {
             break;
         }
@@ -298,13 +355,13 @@ pub(super) fn tightened(bounds: &Aabb, forms: &[Form]) -> Aabb {
 }
 
 /// Cuts off the parts outside, from each side.
-fn cut(mut result: Aabb, forms: &[Form]) -> Aabb {
+fn cut(mut result: Aabb, regions: &[Region<'_>]) -> Aabb {
     for axis in 0..3 {
         let cell = Cell::of(&result);
-        let Some(low) = first_possible(cell, axis, 1.0, forms) else {
+        let Some(low) = first_possible(cell, axis, 1.0, regions) else {
             return Aabb::EMPTY;
         };
-        let Some(high) = first_possible(cell, axis, -1.0, forms) else {
+        let Some(high) = first_possible(cell, axis, -1.0, regions) else {
             return Aabb::EMPTY;
         };
         let slack = 1e-9 * (low.abs() + high.abs() + (high - low).abs());
@@ -318,9 +375,25 @@ fn cut(mut result: Aabb, forms: &[Form]) -> Aabb {
     result
 }
 
+/// Whether one of some places on the lower (`side` 1) or upper (-1) face of a cell is in all regions, so that nothing can be cut off there.
+fn reaches_face(cell: &Cell, axis: usize, side: f64, regions: &[Region<'_>]) -> bool {
+    let mut place = cell.center;
+    place[axis] -= side * cell.half[axis];
+    let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
+    (0..9).any(|number| {
+        let mut place = place;
+        place[a] += (f64::from(number % 3) - 1.0) * 0.75 * cell.half[a];
+        place[b] += (f64::from(number / 3) - 1.0) * 0.75 * cell.half[b];
+        regions.iter().all(|region| region.contains(&place))
+    })
+}
+
 /// The coordinate along an axis, seen from below (`side` 1) or above (-1), at which the first box begins that may contain a
 /// point; `None` if there is no such box.
-fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Option<f64> {
+fn first_possible(mut cell: Cell, axis: usize, side: f64, regions: &[Region<'_>]) -> Option<f64> {
+    if reaches_face(&cell, axis, side, regions) {
+        return Some(cell.center[axis] - side * cell.half[axis]);
+    }
     // Seen from above everything is mirrored.
     cell.center[axis] *= side;
     let whole = cell.half;
@@ -330,13 +403,13 @@ fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Opt
     while let Some(cell) = waiting.pop() {
         let mut there = cell;
         there.center[axis] *= side;
-        if forms.iter().any(|form| form.excludes(&there)) {
+        if regions.iter().any(|region| region.excludes(&there)) {
             continue;
         }
-        // All boxes around a point that is inside of all forms stay, so no box begins later than here.
+        // All boxes around a point that is in all regions stay, so no box begins later than here.
         let mut first = there.center;
         first[axis] = side * cell.low(axis);
-        if forms.iter().all(|form| form.contains(&first)) {
+        if regions.iter().all(|region| region.contains(&first)) {
             return Some(first[axis]);
         }
         // Across the axis boxes may be coarse: only the distance along the axis matters.
@@ -368,7 +441,12 @@ fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Opt
 
 /// Half the side of a cube around the origin outside of which no point is inside of all forms and of the box, if that can be
 /// proven.
-fn reach(bounds: &Aabb, forms: &[Form]) -> Option<f64> {
+fn reach(bounds: &Aabb, regions: &[Region<'_>]) -> Option<f64> {
+    let form = |region: &Region<'_>| match region {
+        Region::Form(form) => Some(form.clone()),
+        Region::Sided(..) | Region::Outside(..) => None,
+    };
+    let mut all: Vec<Form> = regions.iter().filter_map(form).collect();
     let finite = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
     let corners = bounds
         .min
@@ -378,7 +456,7 @@ fn reach(bounds: &Aabb, forms: &[Form]) -> Option<f64> {
     let mut size = corners
         .map(finite)
         .fold(0.0, |a: f64, b| if b > a { b } else { a });
-    for Form(m) in forms {
+    for Form(m) in &all {
         let square = (0..9).map(|n| m[n / 3][n % 3].abs()).sum::<f64>();
         let linear = (0..3).map(|i| m[i][3].abs()).sum::<f64>();
         // Where the terms of different degrees balance.
@@ -392,7 +470,6 @@ fn reach(bounds: &Aabb, forms: &[Form]) -> Option<f64> {
         }
     }
     // The finite sides of the box are planes, too.
-    let mut all = forms.to_vec();
     for axis in 0..3 {
         let normal = DVec3::AXES[axis];
         for (side, at) in [(-1.0, bounds.min[axis]), (1.0, bounds.max[axis])] {
@@ -450,8 +527,9 @@ fn nothing_beyond(axis: usize, side: f64, reach: f64, forms: &[Form]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::conformance::Random;
     use crate::primitives::{Plane, Quadric, Sphere};
-    use crate::{Csg, CsgNode, Primitive};
+    use crate::{Blob, BlobComponent, Csg, CsgNode, Cuboid, Cylinder, Primitive, Torus};
 
     fn intersection(shapes: Vec<Shape>) -> Csg {
         let leaves = shapes
@@ -551,6 +629,88 @@ mod tests {
         let bounds = intersection(vec![ball(4.5), ball(-4.5)]).bounds();
         let r = (25.0 - 4.5 * 4.5_f64).sqrt();
         assert_near(bounds, DVec3::new(-r, -r, -0.5), DVec3::new(r, r, 0.5), 0.4);
+    }
+
+    /// A leaf of a difference: what is subtracted from the first one.
+    fn difference(leaves: Vec<Shape>) -> Csg {
+        let leaf = |shape| CsgNode::Leaf {
+            shape,
+            transform: None,
+            tag: 0,
+        };
+        Csg::try_new(CsgNode::difference(leaves.into_iter().map(leaf))).expect("valid")
+    }
+
+    #[test]
+    fn what_is_subtracted_makes_boxes_smaller() {
+        // A quarter of a ring.
+        let ring = Torus::try_new(DVec3::ZERO, DVec3::Y, 0.8, 0.1).expect("a torus");
+        let half = |normal: DVec3| Shape::from(Plane::new(DVec3::ZERO, normal));
+        let quarter = difference(vec![ring.into(), half(-DVec3::X), half(-DVec3::Z)]);
+        let (low, high) = (DVec3::new(0.0, -0.1, 0.0), DVec3::new(0.9, 0.1, 0.9));
+        assert_near(quarter.bounds(), low, high, 0.03);
+        // A ball without its lower part, which is a box.
+        let ball = Sphere::new(DVec3::ZERO, 1.0);
+        let lower = Cuboid::new(DVec3::splat(-2.0), DVec3::new(2.0, 0.5, 2.0));
+        let cap = difference(vec![ball.clone().into(), lower.into()]).bounds();
+        let r = 0.75_f64.sqrt();
+        assert_near(cap, DVec3::new(-r, 0.5, -r), DVec3::new(r, 1.0, r), 0.05);
+        // A hole changes nothing.
+        let hole = Cylinder::new(-DVec3::Y, DVec3::Y, 0.5);
+        let bounds = difference(vec![ball.into(), hole.into()]).bounds();
+        assert_near(bounds, -DVec3::ONE, DVec3::ONE, 1e-6);
+    }
+
+    /// What a shape says of the side of a box is true of points in it.
+    #[test]
+    fn boxes_are_on_the_side_that_is_told() {
+        let mut random = Random::new(3);
+        let tilted = DVec3::new(0.3, 1.0, -0.5).normalize();
+        let torus = |minor| Torus::try_new(DVec3::X * 0.2, tilted, 1.0, minor).expect("a torus");
+        let squeezed = Transform::try_scale(DVec3::new(1.0, 0.6, 1.3)).expect("regular");
+        let blob = Blob::new(
+            0.4,
+            vec![
+                BlobComponent::sphere(DVec3::ZERO, 1.2, 1.0),
+                BlobComponent::cylinder(DVec3::NEG_X, tilted, 0.8, 0.9).transformed(&squeezed),
+                BlobComponent::sphere(DVec3::X * 0.5, 0.7, -0.8),
+            ],
+        );
+        let shapes: [Shape; 3] = [torus(0.4).into(), torus(1.3).into(), blob.into()];
+        for shape in &shapes {
+            let solid = shape.as_solid().expect("a solid");
+            let mut told = [0; 2];
+            for _ in 0..3000 {
+                let half = (random.cube() + DVec3::splat(1.01)) * random.magnitude(-2.5, -0.5);
+                let center = random.cube() * 2.0;
+                let cell = Aabb::new(center - half, center + half);
+                let Some(side) = solid.side_of(&cell) else {
+                    continue;
+                };
+                told[usize::from(side)] += 1;
+                for _ in 0..20 {
+                    let point = center + half * random.cube();
+                    assert_eq!(solid.contains(point), side, "{shape:?} {cell:?} {point}");
+                }
+                assert!(side || cell.corners().into_iter().all(|c| !solid.contains(c)));
+            }
+            assert!(told.iter().all(|count| *count > 100), "{told:?}");
+        }
+    }
+
+    #[test]
+    fn blobs_are_cut_where_their_field_is_low() {
+        let component =
+            |x: f64, radius, strength| BlobComponent::sphere(DVec3::X * x, radius, strength);
+        let blob = Blob::try_new(
+            0.5,
+            vec![component(0.0, 1.0, 1.0), component(0.03, 0.6, -1.0)],
+        );
+        let floor = Plane::new(DVec3::ZERO, DVec3::Y);
+        let cap = difference(vec![blob.expect("a blob").into(), floor.into()]).bounds();
+        // A thin cap on the side where the second field is weaker.
+        assert!(cap.max.x < -0.2 && cap.min.x > -0.6, "{cap:?}");
+        assert!(cap.min.y > -0.05 && cap.max.y < 0.4, "{cap:?}");
     }
 
     #[test]

@@ -572,6 +572,31 @@ impl Primitive for Torus {
 }
 
 impl Solid for Torus {
+    /// From the distances of the box from the axis and from the plane of the circle.
+    fn side_of(&self, cell: &Aabb) -> Option<bool> {
+        let (middle, half) = (cell.center() - self.center, cell.size() * 0.5);
+        let height = middle.dot(self.axis);
+        let along = half.dot(self.axis.abs());
+        let from_axis = (middle - self.axis * height).length();
+        // The corners come in pairs about the middle.
+        let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+        let across = corners.into_iter().fold(0.0, |most: f64, (y, z)| {
+            let corner = DVec3::new(half.x, y * half.y, z * half.z);
+            most.max((corner - self.axis * corner.dot(self.axis)).length())
+        });
+        let (near, far) = (from_axis - across, from_axis + across);
+        let aside = (near - self.major).max(self.major - far).max(0.0);
+        let above = (height.abs() - along).max(0.0);
+        let slack =
+            gamma(64) * (middle.length() + half.length() + self.center.length() + self.major);
+        if aside.hypot(above) > self.minor + slack {
+            return Some(false);
+        }
+        let aside = (far - self.major).max(self.major - near);
+        let above = height.abs() + along;
+        (aside.hypot(above) < self.minor - slack).then_some(true)
+    }
+
     fn crossings(
         &self,
         ray: &Ray,

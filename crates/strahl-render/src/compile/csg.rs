@@ -25,6 +25,11 @@ impl Pass {
         let flags = appearances
             .iter()
             .fold(0, |f, appearance| f | self.flags(todo, appearance.material));
+        let both = Prim::TRANSMITS | Prim::STOPS;
+        let flags = match flags & both == both {
+            true => flags | Prim::TOGETHER,
+            false => flags,
+        };
         let appearances = Appearances::of_leaves(appearances, todo.body.unwrap_or(0));
         let visible = visible(todo.visibility);
         let filled = flags & Prim::FILLED != 0;

@@ -41,6 +41,13 @@ pub(super) trait Query {
     /// only the frequent queries have them.
     const HAS_FAST_SEARCH: bool = !Self::ALL && !Self::WATCHES;
 
+    /// Whether [`Query::wants_hit`] tells which hits on a primitive with these flags matter; if not, all of them do.
+    #[inline]
+    fn chooses(&self, flags: u8) -> bool {
+        let both = Prim::TRANSMITS | Prim::STOPS;
+        flags & both == both
+    }
+
     /// Whether hits on elements with a transmitting (or opaque) material matter; called only for primitives with both kinds.
     fn wants_hit(&self, transmits: bool) -> bool;
 
@@ -123,7 +130,7 @@ impl Query for Any {
     const ALL: bool = false;
 
     fn wants(&self, flags: u8) -> bool {
-        flags & Prim::STOPS != 0
+        flags & (Prim::STOPS | Prim::TOGETHER) == Prim::STOPS
     }
 
     fn part<'g>(&self, group: &'g RenderGroup) -> Option<&'g Part> {
@@ -161,6 +168,12 @@ impl Query for Transmitting<'_> {
     fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
         self.hits.push(hit);
         t_max
+    }
+
+    /// The opaque surfaces of a tree of both kinds stop the light when it comes to them.
+    fn chooses(&self, flags: u8) -> bool {
+        let all = Prim::TRANSMITS | Prim::STOPS | Prim::TOGETHER;
+        flags & all == Prim::TRANSMITS | Prim::STOPS
     }
 
     fn wants_hit(&self, transmits: bool) -> bool {

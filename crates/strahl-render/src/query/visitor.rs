@@ -261,8 +261,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         };
         let exists =
             prim.flags & Prim::FILTERED == 0 || self.exists(id, prim, &hit, found.surface, front);
-        let mixed = prim.flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
-        let wanted = !mixed || {
+        let wanted = !self.search.query.chooses(prim.flags) || {
             let appearance = self.group.appearance(id, found.surface.element);
             let transmits = self.search.scene.transmits(appearance);
             self.search.query.wants_hit(transmits)

@@ -134,6 +134,48 @@ impl BlobComponent {
         Aabb::new(low - reach, high + reach).padded(rounding)
     }
 
+    /// The box around all points where the field is at least a part of the strength, which must be positive.
+    pub(super) fn bounds_of(&self, part: f64) -> Aabb {
+        // (1 - d²)² >= part.
+        let d = (1.0 - part.sqrt()).max(0.0).sqrt();
+        let center = self.center + self.linear.inverse() * DVec3::new(0.0, 0.0, 0.5 * self.length);
+        let whole = self.bounds();
+        let capsule = whole.size() * 0.5;
+        // Of the capsule only the radius becomes smaller, not the axis.
+        let axis = (self.linear.inverse() * DVec3::new(0.0, 0.0, 0.5 * self.length)).abs();
+        let half = axis + (capsule - axis) * (d * (1.0 + gamma(64)));
+        Aabb::new(center - half, center + half).intersection(&whole)
+    }
+
+    /// The least and the greatest value of the field in a box.
+    pub(super) fn field_in(&self, cell: &Aabb) -> (f64, f64) {
+        let middle = self.linear * (cell.center() - self.center);
+        let half = cell.size() * 0.5;
+        let [x, y, z] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
+        let reach = x.abs() * half.x + y.abs() * half.y + z.abs() * half.z;
+        // Along z the distance is that from the axis, which goes from 0 to its length.
+        let (low, high) = (middle.z - reach.z, middle.z + reach.z);
+        let beyond = |z: f64| (-z).max(z - self.length).max(0.0);
+        let nearest = if high < 0.0 || low > self.length {
+            beyond(low).min(beyond(high))
+        } else {
+            0.0
+        };
+        let across = |least: f64, most: f64| {
+            let (x, y) = (middle.x.abs(), middle.y.abs());
+            let near = DVec3::new((x - reach.x).max(0.0), (y - reach.y).max(0.0), least);
+            let far = DVec3::new(x + reach.x, y + reach.y, most);
+            (near.length_squared(), far.length_squared())
+        };
+        let (near, far) = across(nearest, beyond(low).max(beyond(high)));
+        let field = |square: f64| {
+            let close = (1.0 - square).max(0.0);
+            self.strength * close * close
+        };
+        let (a, b) = (field(near), field(far));
+        (a.min(b), a.max(b))
+    }
+
     /// A ray, or a point and a vector, in the component's own space.
     #[inline]
     pub(super) fn inner(&self, start: DVec3, along: DVec3) -> Inner {

@@ -30,11 +30,16 @@ pub struct Blob {
     /// Over the components, if there are many.
     hierarchy: Option<Bvh2>,
     /// The box around all attracting components.
+    reach: Aabb,
+    /// The box around the surface.
     bounds: Aabb,
 }
 
 /// Up to this many components are tested one by one.
 const LIST_MAX: usize = 6;
+
+/// Blobs of more components have the box around all of them.
+const TIGHTENED: usize = 256;
 
 impl Blob {
     /// The blob of a threshold and components.
@@ -44,9 +49,14 @@ impl Blob {
             .iter()
             .zip(&boxes)
             .filter(|(c, _)| c.strength() > 0.0);
+        let reach = attracting.fold(Aabb::EMPTY, |sum, (_, b)| sum.union(b));
         Self {
             threshold,
-            bounds: attracting.fold(Aabb::EMPTY, |sum, (_, b)| sum.union(b)),
+            reach,
+            bounds: match components.len() {
+                ..=TIGHTENED => tightened(threshold, &components, &boxes),
+                _ => reach,
+            },
             hierarchy: (components.len() > LIST_MAX).then(|| Bvh2::build(&boxes)),
             components,
         }
@@ -64,6 +74,11 @@ impl Blob {
     /// The value of the field on the surface.
     pub fn threshold(&self) -> f64 {
         self.threshold
+    }
+
+    /// The box around the fields of all attracting components.
+    pub fn reach(&self) -> Aabb {
+        self.reach
     }
 
     /// The sources of the field.
@@ -116,6 +131,27 @@ impl Blob {
         });
         sum
     }
+}
+
+/// The box around the surface: where as many as n attracting components overlap, one of them must have an nth of the threshold at least.
+fn tightened(threshold: f64, components: &[BlobComponent], boxes: &[Aabb]) -> Aabb {
+    let all = || {
+        components
+            .iter()
+            .zip(boxes)
+            .filter(|(c, _)| c.strength() > 0.0)
+    };
+    all().fold(Aabb::EMPTY, |sum, (component, bounds)| {
+        let meets = |other: &Aabb| !other.intersection(bounds).is_empty();
+        let overlapping = all().filter(|(_, other)| meets(other)).count();
+        let part = threshold / (overlapping as f64 * component.strength());
+        // NaN and what is not positive are errors that are found later.
+        if part > 0.0 && part <= 1.0 {
+            sum.union(&component.bounds_of(part * (1.0 - gamma(64))))
+        } else {
+            sum
+        }
+    })
 }
 
 /// Collects the components whose field reaches a point.
@@ -197,7 +233,7 @@ impl Primitive for Blob {
         let (field, gradient) = self.field(p);
         // One Newton step along the gradient.
         let step = gradient * ((self.threshold - field) / gradient.length_squared());
-        let size = self.bounds.size().max_element();
+        let size = self.reach.size().max_element();
         let position = if step.length() < size { p + step } else { p };
         let (_, gradient) = self.field(position);
         let n = (-gradient).normalize_or(DVec3::Y);
@@ -222,6 +258,22 @@ impl Primitive for Blob {
 }
 
 impl Solid for Blob {
+    /// From the least and the greatest values of the fields.
+    fn side_of(&self, cell: &Aabb) -> Option<bool> {
+        let (mut low, mut high, mut size) = (0.0, 0.0, self.threshold);
+        for component in &self.components {
+            let (least, most) = component.field_in(cell);
+            low += least;
+            high += most;
+            size += component.strength().abs();
+        }
+        let slack = gamma(1 << 20) * size;
+        if high < self.threshold - slack {
+            return Some(false);
+        }
+        (low > self.threshold + slack).then_some(true)
+    }
+
     fn crossings(
         &self,
         ray: &Ray,

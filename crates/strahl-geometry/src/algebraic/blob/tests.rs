@@ -48,6 +48,20 @@ crate::primitive_tests!(three_balls, three);
 crate::primitive_tests!(stretched_capsules, capsules);
 crate::primitive_tests!(forty, || many(40));
 
+/// A single ball is bounded by its own surface, not by its field; overlapping ones are, where they reach furthest.
+#[test]
+fn boxes_end_near_the_surface() {
+    let one = Blob::new(0.25, vec![BlobComponent::sphere(DVec3::X, 2.0, 1.0)]);
+    let r = 2.0 * 0.5f64.sqrt();
+    assert!((one.bounds().min - (DVec3::X - r)).abs().max_element() < 1e-9);
+    assert!((one.bounds().max - (DVec3::X + r)).abs().max_element() < 1e-9);
+    assert_eq!(one.reach().size().round(), DVec3::splat(4.0));
+    for blob in [three(), capsules(), many(40)] {
+        let (tight, reach) = (blob.bounds(), blob.reach());
+        assert!(tight.size().cmplt(reach.size()).all() && tight.union(&reach) == reach);
+    }
+}
+
 fn crossings(shape: &Blob, ray: &Ray) -> Vec<f64> {
     let mut out = Crossings::default();
     shape.crossings(ray, Interval::LINE, None, &mut Scratch::default(), &mut out);

@@ -97,7 +97,7 @@ impl Blob {
         } else {
             Interval::LINE
         };
-        let Some(clip) = self.bounds.clip(ray, reach) else {
+        let Some(clip) = self.reach.clip(ray, reach) else {
             return;
         };
         // Measured from where the ray enters the bounds, so that the distance of its origin does not matter.

@@ -186,7 +186,11 @@ fn around_shape(shape: &Shape, map: Option<&Transform>) -> Aabb {
         _ => None,
     };
     let Some((start, axis, radius, ends)) = upright else {
-        return moved(map, shape.bounds());
+        let around = match shape {
+            Shape::Blob(blob) => blob.reach(),
+            _ => shape.bounds(),
+        };
+        return moved(map, around);
     };
     let [u, v] = sides(axis.normalize_or(DVec3::Z));
     let mut bounds = Aabb::EMPTY;
