@@ -55,7 +55,7 @@ impl<'a> Region<'a> {
     }
 
     /// Whether nothing of it is in a cell.
-    fn excludes(&self, cell: &Cell) -> bool {
+    pub(super) fn excludes(&self, cell: &Cell) -> bool {
         match self {
             Self::Form(form) => form.excludes(cell),
             Self::Sided(leaf, solid) => cell.bounds().is_some_and(|bounds| {
@@ -646,7 +646,7 @@ mod tests {
         // A quarter of a ring.
         let ring = Torus::try_new(DVec3::ZERO, DVec3::Y, 0.8, 0.1).expect("a torus");
         let half = |normal: DVec3| Shape::from(Plane::new(DVec3::ZERO, normal));
-        let quarter = difference(vec![ring.into(), half(-DVec3::X), half(-DVec3::Z)]);
+        let quarter = difference(vec![ring.into(), half(DVec3::X), half(DVec3::Z)]);
         let (low, high) = (DVec3::new(0.0, -0.1, 0.0), DVec3::new(0.9, 0.1, 0.9));
         assert_near(quarter.bounds(), low, high, 0.03);
         // A ball without its lower part, which is a box.
@@ -694,7 +694,7 @@ mod tests {
                 }
                 assert!(side || cell.corners().into_iter().all(|c| !solid.contains(c)));
             }
-            assert!(told.iter().all(|count| *count > 100), "{told:?}");
+            assert!(told.iter().all(|count| *count > 50), "{told:?}");
         }
     }
 

@@ -4,7 +4,7 @@
 use super::compiled::Csg;
 use super::node::{Kind, Node};
 use super::sweep::Rule;
-use super::tighten::{Cell, Form};
+use super::tighten::{Cell, Form, Region};
 use crate::{Primitive, Solid};
 use strahl_math::{Aabb, DVec3};
 
@@ -38,8 +38,8 @@ impl Csg {
         }
         let differences = self.differences(solid, SLACK * bounds.size().length_squared());
         let fine = bounds.size() * FINE;
-        let forms: Vec<Option<Form>> = (0..self.leaves() as u32)
-            .map(|leaf| self.leaf(leaf).and_then(Form::of))
+        let regions: Vec<Option<Region<'_>>> = (0..self.leaves() as u32)
+            .map(|leaf| self.leaf(leaf).and_then(Region::of))
             .collect();
         let mut waiting = vec![bounds];
         for _ in 0..BUDGET {
@@ -49,7 +49,7 @@ impl Csg {
             let cell = Cell::of(&part);
             if part.corners().into_iter().all(contains)
                 || differences.iter().any(|form| form.excludes(&cell))
-                || self.excludes(0, &part, &forms)
+                || self.excludes(0, &part, &regions)
             {
                 continue;
             }
@@ -89,7 +89,7 @@ impl Csg {
     }
 
     /// Whether nothing of a node is in a box. The depth of the recursion is that of the tree.
-    fn excludes(&self, index: u32, part: &Aabb, forms: &[Option<Form>]) -> bool {
+    fn excludes(&self, index: u32, part: &Aabb, regions: &[Option<Region<'_>>]) -> bool {
         let Some(node) = self.node(index) else {
             return false;
         };
@@ -98,15 +98,15 @@ impl Csg {
         }
         match node.kind {
             Kind::Leaf(leaf) => {
-                let form = forms.get(leaf as usize).and_then(Option::as_ref);
-                form.is_some_and(|form| form.excludes(&Cell::of(part)))
+                let region = regions.get(leaf as usize).and_then(Option::as_ref);
+                region.is_some_and(|region| region.excludes(&Cell::of(part)))
             }
             Kind::Operation(Rule::Intersection) => self
                 .operands_of(node)
-                .any(|o| self.excludes(o, part, forms)),
+                .any(|o| self.excludes(o, part, regions)),
             Kind::Operation(_) => self
                 .operands_of(node)
-                .all(|o| self.excludes(o, part, forms)),
+                .all(|o| self.excludes(o, part, regions)),
         }
     }
 
@@ -117,7 +117,7 @@ impl Csg {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Csg, CsgNode, Cylinder, Plane, Shape, Sphere};
+    use crate::{Csg, CsgNode, Cuboid, Cylinder, Plane, Shape, Sphere, Torus};
     use strahl_math::DVec3;
 
     fn tree(node: CsgNode) -> Csg {
@@ -144,6 +144,21 @@ mod tests {
         let cube = tree(cube());
         assert!(cube.lies_within(&ball(3.0_f64.sqrt())));
         assert!(!cube.lies_within(&ball(1.7)));
+    }
+
+    #[test]
+    fn what_is_left_of_a_ring_lies_in_a_box_around_it() {
+        let ring = Torus::try_new(DVec3::ZERO, DVec3::Y, 0.8, 0.1).expect("a torus");
+        let half = |normal: DVec3| Shape::from(Plane::new(DVec3::ZERO, normal));
+        let leaves = [ring.into(), half(DVec3::X), half(DVec3::Z)];
+        let leaves = leaves.map(|shape: Shape| CsgNode::leaf(shape, 0));
+        let quarter = tree(CsgNode::difference(leaves));
+        let within = |low: f64| {
+            let low = DVec3::new(low, -0.2, low);
+            let around = Cuboid::new(low, DVec3::new(1.0, 0.2, 1.0));
+            quarter.lies_within(&tree(CsgNode::leaf(around, 0)))
+        };
+        assert!(within(-0.02) && !within(0.02));
     }
 
     #[test]

@@ -258,16 +258,28 @@ impl Primitive for Blob {
 }
 
 impl Solid for Blob {
-    /// From the least and the greatest values of the fields.
+    /// From the least and the greatest values of the single fields, which is exact far from the surface, and from the field and its gradient in
+    /// the middle, which is exact to the second order.
     fn side_of(&self, cell: &Aabb) -> Option<bool> {
+        let (center, half) = (cell.center(), cell.size() * 0.5);
         let (mut low, mut high, mut size) = (0.0, 0.0, self.threshold);
+        let (mut middle, mut gradient, mut bend) = (0.0, DVec3::ZERO, 0.0);
         for component in &self.components {
             let (least, most) = component.field_in(cell);
+            if least == 0.0 && most == 0.0 {
+                continue;
+            }
+            let (field, slope) = component.field(center);
             low += least;
             high += most;
             size += component.strength().abs();
+            middle += field;
+            gradient += slope;
+            bend += component.bend();
         }
-        let slack = gamma(1 << 20) * size;
+        let reach = gradient.abs().dot(half) + 0.5 * bend * half.length_squared();
+        let (low, high) = (low.max(middle - reach), high.min(middle + reach));
+        let slack = 1e-9 * (size + reach);
         if high < self.threshold - slack {
             return Some(false);
         }

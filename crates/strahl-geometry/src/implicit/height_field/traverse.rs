@@ -332,7 +332,7 @@ impl Order {
     #[inline(always)]
     fn of(x: u32, z: u32) -> Self {
         Self {
-            differing: 0b11 * x | 0b1100 * z,
+            differing: (0b11 * x) | (0b1100 * z),
         }
     }
 
