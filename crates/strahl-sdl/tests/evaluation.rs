@@ -237,3 +237,30 @@ fn functions_of_pigments_have_no_parameters() {
         errors(&format!("{setup} {rest}"));
     }
 }
+
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn a_color_without_a_colour_is_a_black_value() {
+    for (setup, measured) in [
+        ("#declare C = color;", "0 0 0 0 0"),
+        ("#declare C = colour;", "0 0 0 0 0"),
+        ("#declare C = color filter 0.3;", "0 0 0 0.3 0"),
+        ("#declare C = color alpha 0.5;", "0 0 0 0.5 0"),
+        (
+            "#declare A = array[2] { color, color } #declare C = A[1];",
+            "0 0 0 0 0",
+        ),
+        ("#macro M() color #end #declare C = M();", "0 0 0 0 0"),
+        (
+            "#macro M(P, Q) #declare C = Q; #end M(color, color)",
+            "0 0 0 0 0",
+        ),
+    ] {
+        let text = format!("{setup} #debug vstr(5, C, \" \", 0, 1)");
+        let found = debug(&text).replace(".0", "");
+        assert_eq!(found, measured, "{setup}");
+    }
+    for setup in ["color Nope", "color \"a\"", "rgb", "color rgb", "color red"] {
+        errors(&format!("sphere {{ 0, 1 pigment {{ {setup} }} }}"));
+    }
+}
