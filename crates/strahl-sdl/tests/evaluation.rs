@@ -264,3 +264,19 @@ fn a_color_without_a_colour_is_a_black_value() {
         errors(&format!("sphere {{ 0, 1 pigment {{ {setup} }} }}"));
     }
 }
+
+/// POV-Ray 3.7.0.10: "Redeclaring functions is not allowed - #undef the function first!"
+#[test]
+fn a_function_may_be_declared_again() {
+    let setup = "#declare F = function { x } #declare F = function { 2*x }";
+    assert_eq!(values(setup, &["F(3, 0, 0)"]), [6.0]);
+    let setup = "#macro M(K) #local F = function { K*x } #debug str(F(1, 0, 0), 0, 0) #end";
+    assert_eq!(debug(&format!("{setup} M(1) M(2)")), "12");
+}
+
+/// POV-Ray 3.7.0.10: "No matching } in 'material', material found instead"
+#[test]
+fn a_material_may_contain_a_material() {
+    let text = "#declare M = material { texture { pigment { rgb 1 } } } sphere { 0, 1 material { material { M } } }";
+    assert_eq!(debug(text), "");
+}
