@@ -1,6 +1,6 @@
 //! What expressions give where POV-Ray's rules surprise.
 
-use crate::common::debug;
+use crate::common::{debug, errors};
 use crate::language::values;
 
 /// Of POV-Ray 3.7.0.10.
@@ -154,4 +154,129 @@ fn extents_are_those_of_povray() {
             );
         }
     }
+}
+
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn what_macros_and_directives_yield_decides_what_a_function_is() {
+    let setup = "#declare Grey = pigment { gradient x color_map { [0 rgb 0] [1 rgb 1] } } #macro P() pigment { Grey } #end
+        #macro Of(H) pigment { H } #end #macro Q() pattern { gradient x } #end #macro T() transform { rotate 90*z scale 2 } #end
+        #macro S() spline { linear_spline 0, <0, 1, 0> 1, <1, 0, 1> } #end #macro W() #if (1) P() #end #end #macro N() 2*x #end
+        #macro Inside(O) function { pigment { object { O color rgb 0 color rgb 1 } } } #end";
+    for (function, value, measured) in [
+        ("{ P() }", "F(0.3, 0, 0).red", 0.3),
+        ("{ Of(Grey) }", "F(0.3, 0, 0).red", 0.3),
+        ("{ W() }", "F(0.3, 0, 0).red", 0.3),
+        ("{ Q() }", "F(0.3, 0, 0)", 0.3),
+        ("{ T() }", "F(0.3, 0.1, 0).x", -0.2),
+        ("{ S() }", "F(0.3).y", 0.7),
+        ("{ N() + 1 }", "F(0.3, 0, 0)", 1.6),
+        (
+            "{ #if (1) pattern { gradient x } #else x #end }",
+            "F(0.3, 0, 0)",
+            0.3,
+        ),
+        (
+            "{ #if (0) pattern { gradient x } #else 2*x #end }",
+            "F(0.3, 0, 0)",
+            0.6,
+        ),
+        (
+            "{ #local K = 2; pigment { Grey scale K } }",
+            "F(0.3, 0, 0).red",
+            0.15,
+        ),
+        (
+            "{ #declare G = function { x*3 } pattern { gradient x scale G(1, 0, 0) } }",
+            "F(0.3, 0, 0)",
+            0.1,
+        ),
+        (
+            "{ #include \"rand.inc\" pigment { Grey } #local K = 1; }",
+            "F(0.3, 0, 0).red",
+            0.3,
+        ),
+    ] {
+        let setup = format!("{setup} #declare F = function {function}");
+        let [found] = values(&setup, &[value])[..] else {
+            panic!("one value: {function}");
+        };
+        assert!((found - measured).abs() < 1e-9, "{function}: {found}");
+    }
+    let setup = format!("{setup} #declare F = Inside(sphere {{ 0, 1 }})");
+    let list = ["F(0.3, 0, 0).red", "F(1.3, 0, 0).red"];
+    assert_eq!(values(&setup, &list), [1.0, 0.0]);
+}
+
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn what_macros_and_directives_yield_decides_what_a_picture_of_a_function_is() {
+    let setup = "#include \"functions.inc\" #declare Grey = pigment { gradient x color_map { [0 rgb 0] [1 rgb 1] } }
+        #macro P() pigment { Grey } #end #macro Q() pattern { gradient x } #end";
+    for (function, measured) in [
+        ("{ P() }", 0.5),
+        ("{ Q() }", 0.5),
+        ("{ #if (1) pigment { Grey } #end }", 0.5),
+        ("{ #local K = 2; x/K }", 0.25),
+    ] {
+        let setup = format!(
+            "{setup} #declare Made = pigment {{ image_map {{ function 11, 11 {function} }} }}"
+        );
+        let [found] = values(&setup, &["eval_pigment(Made, <0.5, 0.5, 0>).red"])[..] else {
+            panic!("one value: {function}");
+        };
+        assert!((found - measured).abs() < 2e-5, "{function}: {found}");
+    }
+}
+
+/// Of POV-Ray 3.7.0.10, which refuses them.
+#[test]
+fn functions_of_pigments_have_no_parameters() {
+    let setup = "#macro P() pigment { gradient x } #end #declare F = function";
+    for rest in ["(x, y, z) { P() }", "{ P() + 1 }"] {
+        errors(&format!("{setup} {rest}"));
+    }
+}
+
+/// Of POV-Ray 3.7.0.10.
+#[test]
+fn a_color_without_a_colour_is_a_black_value() {
+    for (setup, measured) in [
+        ("#declare C = color;", "0 0 0 0 0"),
+        ("#declare C = colour;", "0 0 0 0 0"),
+        ("#declare C = color filter 0.3;", "0 0 0 0.3 0"),
+        ("#declare C = color alpha 0.5;", "0 0 0 0.5 0"),
+        (
+            "#declare A = array[2] { color, color } #declare C = A[1];",
+            "0 0 0 0 0",
+        ),
+        ("#macro M() color #end #declare C = M();", "0 0 0 0 0"),
+        (
+            "#macro M(P, Q) #declare C = Q; #end M(color, color)",
+            "0 0 0 0 0",
+        ),
+    ] {
+        let text = format!("{setup} #debug vstr(5, C, \" \", 0, 1)");
+        let found = debug(&text).replace(".0", "");
+        assert_eq!(found, measured, "{setup}");
+    }
+    for setup in ["color Nope", "color \"a\"", "rgb", "color rgb", "color red"] {
+        errors(&format!("sphere {{ 0, 1 pigment {{ {setup} }} }}"));
+    }
+}
+
+/// POV-Ray 3.7.0.10: "Redeclaring functions is not allowed - #undef the function first!"
+#[test]
+fn a_function_may_be_declared_again() {
+    let setup = "#declare F = function { x } #declare F = function { 2*x }";
+    assert_eq!(values(setup, &["F(3, 0, 0)"]), [6.0]);
+    let setup = "#macro M(K) #local F = function { K*x } #debug str(F(1, 0, 0), 0, 0) #end";
+    assert_eq!(debug(&format!("{setup} M(1) M(2)")), "12");
+}
+
+/// POV-Ray 3.7.0.10: "No matching } in 'material', material found instead"
+#[test]
+fn a_material_may_contain_a_material() {
+    let text = "#declare M = material { texture { pigment { rgb 1 } } } sphere { 0, 1 material { material { M } } }";
+    assert_eq!(debug(text), "");
 }

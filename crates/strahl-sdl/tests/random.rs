@@ -80,4 +80,5 @@ groups! {
     dispersion_needs_an_index_of_refraction,
     the_last_noise_generator_counts_for_all_of_the_scene,
     the_last_number_of_waves_counts_for_all_of_the_scene,
+    a_color_without_a_colour_is_black,
 }

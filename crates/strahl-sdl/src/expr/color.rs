@@ -1,6 +1,6 @@
-use crate::keywords::Word;
+use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
-use crate::token::Kind;
+use crate::token::{Kind, Token};
 use crate::value::Vector;
 use strahl_shade::{Color, srgb};
 
@@ -8,14 +8,14 @@ impl Parser<'_> {
     /// A colour: red, green, blue, filter, transmit.
     ///
     /// `rgb <1, 0, 0>`, `color rgbt 0.5`, `red 1 green 0.5`, the name of a colour, any vector; parts such as
-    /// `filter 0.5` may follow and replace a component.
+    /// `filter 0.5` may follow and replace a component. `color` alone is black.
     ///
     /// # Errors
     /// If there is no colour.
     pub fn color(&mut self) -> PResult<[f64; 5]> {
         let token = self.peek()?;
         match token.word() {
-            Some(w) if w.kind() == crate::keywords::WordKind::Color => self.color_expression(),
+            Some(w) if w.kind() == WordKind::Color => self.color_expression(),
             _ => {
                 let color = self.calculation()?;
                 self.color_parts(opaque(color))
@@ -38,10 +38,9 @@ impl Parser<'_> {
             Some(Word::Color | Word::Colour) => {
                 self.take(token)?;
                 let next = self.peek()?;
-                match next.word() {
-                    // A repeated `color` changes nothing.
-                    Some(Word::Color | Word::Colour) => self.nested_end(Self::color_expression),
-                    _ => self.color(),
+                match ends_color(next) {
+                    true => self.color_parts([0.0; 5]),
+                    false => self.color(),
                 }
             }
             Some(Word::Rgb) => self.rgb(3, false),
@@ -114,6 +113,31 @@ impl Parser<'_> {
                 *slot = value;
             }
         }
+    }
+}
+
+/// Whether a token behind the word `color` belongs to what follows it: a `color` without a colour is black, as in POV-Ray (measured), also in
+/// front of another one (`checker color color Red`). Names and strings are mistakes, which the expression reports.
+fn ends_color(token: Token) -> bool {
+    match token.kind {
+        Kind::Word => token.word().is_some_and(|word| match word.kind() {
+            WordKind::Color => matches!(word, Word::Color | Word::Colour),
+            kind => !matches!(
+                kind,
+                WordKind::Constant
+                    | WordKind::FloatFunction
+                    | WordKind::VectorFunction
+                    | WordKind::StringFunction
+                    | WordKind::Scope
+            ),
+        }),
+        Kind::RightBrace
+        | Kind::RightBracket
+        | Kind::RightParen
+        | Kind::Comma
+        | Kind::Semicolon
+        | Kind::End => true,
+        _ => false,
     }
 }
 

@@ -57,10 +57,9 @@ fn not_a_parameter(word: Word, body: &Body) -> String {
 impl Parser<'_> {
     /// The value after the keyword `function` in a declaration.
     pub(crate) fn function_value(&mut self) -> PResult<Value> {
-        let open = self.peek()?;
-        let body = self.raw_ahead(1);
-        if open.kind == Kind::LeftBrace {
-            match body.word() {
+        if self.peek()?.kind == Kind::LeftBrace {
+            // What directives and macros yield decides too (measured).
+            match self.peek_into_braces()?.word() {
                 Some(Word::Internal) => return self.internal_by_number(),
                 Some(Word::Pattern) => return self.pattern_function(),
                 Some(Word::Pigment) => return self.pigment_function(),

@@ -71,12 +71,25 @@ impl Parser<'_> {
         })
     }
 
-    /// Takes a `{` and returns the token after it without taking that. The next [`Parser::braces`] continues after the brace.
+    /// The first token after the `{` that follows, without taking it. Directives and macro calls before it are run, for which the brace
+    /// must be taken: the next [`Parser::braces`] continues after it.
     ///
     /// # Errors
-    /// If there is no brace, or a directive before it fails.
+    /// If there is no brace, or a directive after it fails.
     pub(crate) fn peek_into_braces(&mut self) -> PResult<Token> {
-        self.expect(Kind::LeftBrace)?;
+        let open = self.peek()?;
+        if open.kind != Kind::LeftBrace {
+            return Err(self.unexpected(open, Kind::LeftBrace.describe()));
+        }
+        let next = self.raw_ahead(1);
+        let unfolds = match (next.kind, next.symbol()) {
+            (Kind::Name, Some(symbol)) => self.scopes.find_macro(symbol).is_some(),
+            (kind, _) => matches!(kind, Kind::Directive | Kind::End),
+        };
+        if !unfolds {
+            return Ok(next);
+        }
+        self.take(open)?;
         // Directives before it read braces of their own.
         let token = self.peek()?;
         self.brace_taken = true;

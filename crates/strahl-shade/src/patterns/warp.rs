@@ -93,6 +93,15 @@ impl BlackHole {
         }
     }
 
+    /// Whether the point is so far outside that it certainly stays where it is. Scenes have hundreds of holes, and most points are outside of
+    /// nearly all of them: so they need no root. The next number above a rounded square is above the square, so the root of what is greater
+    /// is not below the radius.
+    #[inline]
+    fn leaves(&self, p: DVec3) -> bool {
+        let is_repeated = self.repeat.cmpgt(DVec3::ZERO).any() || self.turbulence != DVec3::ZERO;
+        !is_repeated && (p - self.center).length_squared() > self.radius * self.radius
+    }
+
     fn apply(&self, p: DVec3) -> DVec3 {
         let mut from_center = p - self.center;
         let mut block = [0; 3];
@@ -125,7 +134,15 @@ impl BlackHole {
 
 impl Warp {
     /// Where the pattern has to be evaluated for the point `p`.
+    #[inline]
     pub fn apply(&self, p: DVec3) -> DVec3 {
+        match self {
+            Self::BlackHole(hole) if hole.leaves(p) => p,
+            _ => self.moved(p),
+        }
+    }
+
+    fn moved(&self, p: DVec3) -> DVec3 {
         match self {
             Self::Transform(transform) => transform.point_to_object(p),
             Self::Repeat {

@@ -71,19 +71,7 @@ impl Parser<'_> {
         if self.raw().kind != Kind::LeftBrace {
             return Ok(false);
         }
-        let next = self.raw_ahead(1);
-        let unfolds = match next.kind {
-            Kind::Directive => true,
-            Kind::Name => next
-                .symbol()
-                .is_some_and(|s| self.scopes.find_macro(s).is_some()),
-            _ => return Ok(false),
-        };
-        let token = if unfolds {
-            self.peek_into_braces()?
-        } else {
-            next
-        };
+        let token = self.peek_into_braces()?;
         Ok(self.names_object(token))
     }
 

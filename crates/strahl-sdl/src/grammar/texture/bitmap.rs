@@ -457,7 +457,7 @@ impl Parser<'_> {
                 *texel = [*value, *value, *value, 1.0];
             }
         };
-        let inner = self.raw_ahead(1);
+        let inner = self.peek_into_braces()?;
         if inner.is(Word::Pigment) {
             let pigment = self.braces(|p| {
                 p.next()?;

@@ -165,3 +165,41 @@ pub(super) fn built() -> Vec<Built> {
         ),
     ]
 }
+
+/// With falloff 0 every point within moves, so the border is seen: that of the distance, though most points are decided by its square.
+#[test]
+fn black_holes_end_where_the_distance_is_the_radius() {
+    let mut counts = [0; 2];
+    for k in 0..400_u32 {
+        let radius = 0.3 + f64::from(k) * 0.0137;
+        let hole = BlackHole {
+            falloff: 0.0,
+            ..BlackHole::new(DVec3::new(0.0, 0.5, 0.0), radius)
+        };
+        let mut x = radius * 0.8;
+        let y = (radius * radius - x * x).sqrt();
+        for _ in 0..8 {
+            x = x.next_down();
+        }
+        for _ in 0..16 {
+            x = x.next_up();
+            let p = DVec3::new(x, 0.5 + y, 0.0);
+            let within = (p - hole.center).length() < radius;
+            assert_eq!(Warp::BlackHole(hole).apply(p) != p, within, "{radius} {x}");
+            counts[usize::from(within)] += 1;
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 1000), "{counts:?}");
+    // Also where the squares are no numbers to go by.
+    for radius in [1e-170, 1e160, 0.0, -1.0, f64::NAN] {
+        for x in [1e-171, 1e-169, 1e159, 0.5, 0.0] {
+            let hole = BlackHole {
+                falloff: 0.0,
+                ..BlackHole::new(DVec3::Y, radius)
+            };
+            let p = DVec3::new(x, 1.0, 0.0);
+            let within = (p - hole.center).length() < radius && x != 0.0;
+            assert_eq!(Warp::BlackHole(hole).apply(p) != p, within, "{radius} {x}");
+        }
+    }
+}
