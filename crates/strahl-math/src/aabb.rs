@@ -72,6 +72,21 @@ impl Aabb {
         self.min * 0.5 + self.max * 0.5
     }
 
+    /// The eight parts of the box, halved along each axis; meaningful for bounded boxes. Part `i + 2 j + 4 k` is the lower (0) or the upper (1) one along
+    /// x, y and z.
+    pub fn eighths(&self) -> [Self; 8] {
+        let (low, middle, high) = (self.min, self.center(), self.max);
+        std::array::from_fn(|part| {
+            let pick = |a: DVec3, b: DVec3| {
+                DVec3::from_array([0, 1, 2].map(|axis| match part >> axis & 1 {
+                    0 => a[axis],
+                    _ => b[axis],
+                }))
+            };
+            Self::new(pick(low, middle), pick(middle, high))
+        })
+    }
+
     /// The edge lengths; negative if empty.
     pub fn size(&self) -> DVec3 {
         self.max - self.min
@@ -173,6 +188,18 @@ impl Aabb {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn eighths_make_up_the_box() {
+        let whole = Aabb::new(DVec3::new(-1.0, 0.0, 2.0), DVec3::new(1.0, 4.0, 8.0));
+        let parts = whole.eighths();
+        assert_eq!(parts[5].min, DVec3::new(0.0, 0.0, 5.0));
+        assert_eq!(parts[5].max, DVec3::new(1.0, 2.0, 8.0));
+        assert_eq!(
+            parts.iter().fold(Aabb::EMPTY, |b, part| b.union(part)),
+            whole
+        );
+    }
 
     #[test]
     fn an_empty_box_is_the_neutral_element() {

@@ -130,7 +130,7 @@ impl Face<'_> {
         }
         let levels = levels.checked_sub(1)?;
         let mut side = None;
-        for part in eighths(cell) {
+        for part in cell.eighths() {
             let positive = self.side(&part, levels, budget)?;
             if *side.get_or_insert(positive) != positive {
                 return None;
@@ -248,23 +248,12 @@ impl Inside<'_> {
         match levels.checked_sub(1) {
             None => *found = found.union(cell),
             Some(levels) => {
-                for part in eighths(cell) {
+                for part in cell.eighths() {
                     self.collect(&part, levels, found);
                 }
             }
         }
     }
-}
-
-/// The eight parts of a cell halved along each axis.
-fn eighths(cell: &Aabb) -> [Aabb; 8] {
-    let (low, middle, high) = (cell.min, cell.center(), cell.max);
-    std::array::from_fn(|octant| {
-        let upper = |axis: usize| octant >> axis & 1 == 1;
-        let pick = |axis: usize, a: DVec3, b: DVec3| if upper(axis) { b[axis] } else { a[axis] };
-        let corner = |a: DVec3, b: DVec3| DVec3::new(pick(0, a, b), pick(1, a, b), pick(2, a, b));
-        Aabb::new(corner(low, middle), corner(middle, high))
-    })
 }
 
 fn ranges(cell: &Aabb) -> [Range; 3] {
