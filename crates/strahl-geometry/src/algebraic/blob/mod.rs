@@ -36,7 +36,7 @@ pub struct Blob {
 }
 
 /// Up to this many components are tested one by one.
-const LIST_MAX: usize = 6;
+const LIST_MAX: usize = 16;
 
 /// Blobs of more components have the box around all of them.
 const TIGHTENED: usize = 256;

@@ -242,6 +242,17 @@ impl Primitive for Julia {
         orbit_search::any_hit(self, ray, range, from)
     }
 
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        crate::primitive::hits_of_solid(self, ray, range, from, scratch, out);
+    }
+
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let point = orbit_search::surface_at(self, ray, hit);
         if hit.surface == BALL {
