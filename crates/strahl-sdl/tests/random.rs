@@ -81,4 +81,5 @@ groups! {
     the_last_noise_generator_counts_for_all_of_the_scene,
     the_last_number_of_waves_counts_for_all_of_the_scene,
     a_color_without_a_colour_is_black,
+    shadows_of_trees_with_opaque_and_transparent_parts,
 }
