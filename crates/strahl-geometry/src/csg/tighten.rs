@@ -364,7 +364,12 @@ pub(super) fn tightened(bounds: &Aabb, regions: &[Region<'_>]) -> Aabb {
     {
         let mut found = Aabb::EMPTY;
         collect(&result, LEVELS, regions, &mut found);
-        result = found;
+        if found.is_empty() {
+            return found;
+        }
+        // A surface may lie in the side of a part that begins where another one, left out, ends.
+        let slack = 1e-9 * (found.max_abs() + found.size().max_element());
+        result = found.padded(DVec3::splat(slack)).intersection(&result);
     }
     result
 }
