@@ -31,7 +31,7 @@ impl Small {
         let mut slabs = None;
         for (bit, operand) in self.operands.iter().enumerate() {
             // The others only clip, which does not matter if the ray meets no visible surface in the range.
-            if bit == self.visible && spans.is_empty() {
+            if bit == self.through_visible && spans.is_empty() {
                 return Ok(());
             }
             let (number, leaf) = (operand.leaf, &leaves[operand.leaf as usize]);

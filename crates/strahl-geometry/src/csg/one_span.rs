@@ -76,7 +76,7 @@ impl Small {
         let (far, mut may_show) = (query.alive.max, false);
         for (n, number) in self.leaf_numbers().enumerate() {
             // The others only clip, which does not matter if the ray meets no visible surface in the range.
-            if n == self.visible && !may_show {
+            if n == self.through_visible && !may_show {
                 return Ok(());
             }
             let leaf = &leaves[number as usize];

@@ -14,10 +14,11 @@ const MOST_PLANES: usize = 3;
 /// A tree of a few leaves.
 #[derive(Clone, Debug)]
 pub(super) struct Small {
-    /// Those that are visible first, and of each kind those that are not complements.
+    /// Those that are visible, then those that only clip, and of each kind first those that are not complements. If a visible one has its crossings
+    /// searched for (a torus, a polynomial), quick solids that clip come before all: they narrow the search.
     pub(super) operands: ArrayVec<Operand, MOST>,
-    /// The number of the visible ones; the others only clip.
-    pub(super) visible: usize,
+    /// How many operands there are up to the last visible one; those behind it only clip.
+    pub(super) through_visible: usize,
     /// Whether it is an intersection of leaves that a line crosses at most twice, or of their complements.
     pub(super) is_intersection: bool,
     /// Whether it is a merge of such leaves, none of them a complement.
@@ -62,11 +63,22 @@ impl Small {
                 }
             }
         }
+        let narrows_first = leaves.iter().any(|l| l.visible && !l.has_stays());
         // Stable: quick ones stay in front.
-        order.sort_by_key(|n| (!leaf(*n).visible, leaf(*n).negative));
+        order.sort_by_key(|n| {
+            let leaf = leaf(*n);
+            let narrows = narrows_first && leaf.has_stays() && leaf.is_quick();
+            let turn = match leaf.visible {
+                false if narrows && !leaf.negative => 0,
+                true => 1,
+                false => 2,
+            };
+            (turn, leaf.negative)
+        });
+        let last_visible = order.iter().rposition(|n| leaf(*n).visible);
         let operands = Table::new(nodes, operands, &order)?.operands(leaves, &order);
         Some(Self {
-            visible: order.iter().filter(|n| leaf(**n).visible).count(),
+            through_visible: last_visible.map_or(0, |last| last + 1),
             is_intersection: operands.iter().all(|o| o.required && o.simple),
             is_merge: leaves.iter().all(|l| l.has_stays() && !l.negative)
                 && nodes.len() > 1

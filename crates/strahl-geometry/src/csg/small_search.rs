@@ -107,7 +107,7 @@ impl Small {
         {
             let leaf = &leaves[number as usize];
             let stay = leaf.stay(ray, Some(surface));
-            let alone = self.visible == 1 && leaf.visible;
+            let alone = self.through_visible == 1 && leaf.visible;
             // Most rays from surfaces: nothing else is worked out for them.
             if stay.is_some_and(|stay| {
                 leaf.is_left_for_good(&stay, surface) || alone && stay.is_crossed_once(surface)
@@ -132,7 +132,7 @@ impl Small {
         let mut possible = States::ALL;
         for (bit, operand) in self.operands.iter().enumerate() {
             // The others only clip, which does not matter if the ray meets no visible surface in the range.
-            if bit == self.visible && !events.list.iter().any(|e| e.t <= far) {
+            if bit == self.through_visible && !events.may_show(far) {
                 return Ok(());
             }
             if !operand.matters.meets(possible) {
@@ -309,6 +309,12 @@ impl Query<'_> {
 }
 
 impl Events {
+    /// Whether a crossing of a visible surface lies in front of `far`.
+    #[inline]
+    fn may_show(&self, far: f64) -> bool {
+        self.list.iter().any(|e| e.visible && e.t <= far)
+    }
+
     /// Adds a crossing behind those that are not further away.
     #[inline]
     fn insert(
