@@ -15,8 +15,8 @@ pub(crate) type NextRays = ArrayVec<Option<Ray>, { 2 * PACKET }>;
 pub(crate) struct RayBundle {
     /// The position, in pixels.
     pub(super) at: (f64, f64),
-    /// How far its points of the lens are from those of other positions.
-    pub(super) shift: [f64; 4],
+    /// How its points of the lens differ from those of other positions: which bits of their coordinates are flipped.
+    pub(super) flips: [u32; 4],
     /// The number of the next ray of a mesh camera.
     pub(super) next: u32,
     /// The number of rays so far, their colours and the squares of these.
@@ -32,7 +32,7 @@ impl RayBundle {
     pub(super) fn new(x: f64, y: f64) -> Self {
         Self {
             at: (x, y),
-            shift: scramble((x, y)),
+            flips: scramble((x, y)),
             next: 0,
             count: 0,
             sum: Color::BLACK,
@@ -82,8 +82,8 @@ impl RayBundle {
     }
 }
 
-/// Four numbers in `0..1` that differ for every position in the picture (the mixer of SplitMix64).
-fn scramble((x, y): (f64, f64)) -> [f64; 4] {
+/// Four numbers that differ for every position in the picture (the mixer of SplitMix64).
+fn scramble((x, y): (f64, f64)) -> [u32; 4] {
     let mix = |mut z: u64| {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -91,7 +91,6 @@ fn scramble((x, y): (f64, f64)) -> [f64; 4] {
     };
     let first = mix(x.to_bits().wrapping_add(0x9e37_79b9_7f4a_7c15));
     let bits = mix(first ^ y.to_bits().rotate_left(32));
-    let unit = |bits: u64| (bits >> 40) as f64 / (1u64 << 24) as f64;
     let more = mix(bits);
-    [unit(bits), unit(bits << 24), unit(more), unit(more << 24)]
+    [bits, bits >> 32, more, more >> 32].map(|bits| bits as u32)
 }

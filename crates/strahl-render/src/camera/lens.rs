@@ -1,7 +1,10 @@
 mod fours;
+mod sobol;
 
 use super::bundle::{NextRays, RayBundle};
+use arrayvec::ArrayVec;
 use fours::FourRays;
+use sobol::sobol;
 use std::sync::Arc;
 use strahl_accel::PACKET;
 use strahl_math::{DVec3, Ray, det};
@@ -14,6 +17,10 @@ const RAYS_MIN: u32 = 4;
 /// The number of rays that POV-Ray traces, divided by `sd * sqrt(most / variance)`, in the limit of many rays. Measured on planes
 /// whose colours have the standard deviation `sd`; the numbers are in the test `as_many_rays_as_povray`.
 const RAYS_PER_DEVIATION: f64 = 0.977;
+
+/// The share of POV-Ray's rays that leave its error: samples of a sequence are spread better than its own. Measured on 17 pictures with
+/// edges, textures and grass.
+const SHARE: f64 = 0.75;
 
 /// Focal blur: makes rays through a lens.
 #[derive(Clone, Debug)]
@@ -32,6 +39,8 @@ pub(super) struct LensSampler {
     /// The square root of `variance`.
     tolerance: f64,
     bokeh: Option<Arc<Bokeh>>,
+    /// Whether the first [`WIDE`] samples are those of [`hexagon`].
+    begins_wide: bool,
     /// How four rays are made at once, for the cameras of nearly all scenes.
     fours: Option<FourRays>,
 }
@@ -60,6 +69,7 @@ impl LensSampler {
             quantile: quantile(lens.confidence),
             tolerance: lens.variance.sqrt(),
             bokeh: lens.bokeh.clone(),
+            begins_wide: lens.bokeh.is_none() && lens.min_samples.min(lens.max_samples) >= WIDE,
             fours: None,
         };
         lens.fours = FourRays::new(camera, &lens, size);
@@ -81,13 +91,13 @@ impl LensSampler {
         if wanted == 0 {
             return;
         }
-        let shift = bundle.shift;
         let numbers = bundle.count..bundle.count + wanted;
-        let made = self.fours.as_ref();
+        let samples: Samples = numbers.map(|n| self.sample(n, bundle.flips)).collect();
         let before = rays.len();
-        if !made.is_some_and(|fours| fours.push(numbers.clone(), shift, [x, y], rays)) {
+        let fours = self.fours.as_ref();
+        if !fours.is_some_and(|fours| fours.push(&samples, [x, y], rays)) {
             rays.truncate(before);
-            rays.extend(numbers.map(|index| self.ray(index, shift, (x, y), &center)));
+            rays.extend(samples.iter().map(|s| self.ray(*s, (x, y), &center)));
         }
     }
 
@@ -97,7 +107,8 @@ impl LensSampler {
         let more = if count < fewest.min(most) {
             fewest.min(most) - count
         } else {
-            let missing = self.enough(sum, squares, count) - f64::from(count);
+            let povray = self.enough(sum, squares, count).min(f64::from(most));
+            let missing = SHARE * povray - f64::from(count);
             if missing <= 0.0 {
                 return 0;
             }
@@ -108,16 +119,27 @@ impl LensSampler {
         more.min(PACKET as u32)
     }
 
-    /// The ray with this number.
+    /// The sample with this number, at a position that flips these bits.
+    fn sample(&self, number: u32, flips: [u32; 4]) -> [f64; 4] {
+        if !self.begins_wide {
+            return sample(number, flips);
+        }
+        match number {
+            0 => [0.0, 0.0, 0.5, 0.5],
+            1..WIDE => hexagon(number, flips[0]),
+            // The points that follow, and are well spread with each other, begin with a multiple of eight.
+            _ => sample(number + 1, flips),
+        }
+    }
+
+    /// The ray of a sample.
     #[inline(always)]
     fn ray(
         &self,
-        index: u32,
-        shift: [f64; 4],
+        [a, b, c, d]: [f64; 4],
         (x, y): (f64, f64),
         center: impl Fn(f64, f64) -> Option<Ray>,
     ) -> Option<Ray> {
-        let [a, b, c, d] = sample(index, shift);
         let point = match &self.bokeh {
             Some(bokeh) => bokeh.point(a, b),
             None => disc(a, b),
@@ -179,24 +201,39 @@ fn quantile(confidence: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
 
-/// One over the root of x^5 = x + 1, and over its powers.
-const STEPS: [f64; 4] = [
-    0.856_674_883_854_502_9,
-    0.733_891_856_627_126,
-    0.628_706_721_037_808_7,
-    0.538_597_257_223_610_1,
-];
+/// A point in the unit cube of four dimensions: that of the lens, as [`disc`] or a [`Bokeh`] maps it, and that of the pixel.
+type Samples = ArrayVec<[f64; 4], PACKET>;
 
-/// Point `index` of a low-discrepancy sequence in the unit cube of four dimensions (M. Roberts' sequence, 2018), shifted.
-fn sample(index: u32, shift: [f64; 4]) -> [f64; 4] {
-    let n = f64::from(index);
-    let mut point = shift;
-    for (x, step) in point.iter_mut().zip(STEPS) {
-        let y = *x + n * step;
-        // Not below 0, where the cast rounds down.
-        *x = y - (y as i64) as f64;
+/// Point `index` of Sobol's sequence in the unit cube of four dimensions, with its bits flipped as `flips` says.
+fn sample(index: u32, flips: [u32; 4]) -> [f64; 4] {
+    let mut coordinates = [0.0; 4];
+    for ((x, bits), flip) in coordinates.iter_mut().zip(sobol(index)).zip(flips) {
+        *x = unit(bits ^ flip);
     }
-    point
+    coordinates
+}
+
+/// A number in `0..1`, from one in units of 2^-32.
+fn unit(bits: u32) -> f64 {
+    f64::from(bits) / (1u64 << u32::BITS) as f64
+}
+
+/// The number of samples that lie far apart: one in the middle of pixel and lens, and six of a [`hexagon`].
+const WIDE: u32 = 7;
+
+/// A corner of a hexagon in the lens and, a quarter of a turn further, of one in the pixel; `turn` turns both, in units of 2^-32.
+///
+/// A pixel whose first rays all see the same takes no more, so these must find all that it sees a larger part of. An edge crosses a pixel
+/// and its lens as a line crosses a disc. Behind a line that no corner lies beyond there is at most a twelfth of the lens, where seven
+/// points of a sequence may miss twice as much. The quarter of a turn makes the hexagons equally wide in front of the focus and behind.
+fn hexagon(corner: u32, turn: u32) -> [f64; 4] {
+    // The squared radius on the lens, of which all samples have 1/2 in the mean, and the radius in the pixel.
+    const ON_LENS: f64 = 0.7;
+    const IN_PIXEL: f64 = 0.45;
+    let angle = unit(turn) + f64::from(corner) * (1.0 / f64::from(WIDE - 1));
+    let angle = angle - (angle as i64) as f64;
+    let (sin, cos) = det::sin_cos(std::f64::consts::TAU * angle);
+    [ON_LENS, angle, 0.5 - IN_PIXEL * sin, 0.5 + IN_PIXEL * cos]
 }
 
 /// Maps the unit square to the unit disc, uniformly.
@@ -290,7 +327,7 @@ mod tests {
             Color::gray(f64::from(count % 2))
         };
         color(&lens, (0.5, 0.5), same, alternate);
-        assert!(widest > 0.45 && count == 100, "{widest} {count}");
+        assert!(widest > 0.45 && count == 75, "{widest} {count}");
     }
 
     #[test]
@@ -303,6 +340,26 @@ mod tests {
         };
         let mean = color(&blurred(1000), (3.5, 2.5), |_, _| Some(ray), gray);
         assert_eq!((mean, count), (Color::gray(0.25), 7));
+    }
+
+    #[test]
+    fn the_first_rays_lie_beyond_each_wide_edge() {
+        let lens = blurred(100);
+        for turn in [0, 1 << 29, 0x1234_5678, u32::MAX] {
+            let samples: Vec<_> = (0..WIDE).map(|n| lens.sample(n, [turn; 4])).collect();
+            for n in 0..360 {
+                let (sin, cos) = f64::from(n).to_radians().sin_cos();
+                let on_lens = samples.iter().map(|[a, b, ..]| disc(*a, *b));
+                let widest = on_lens.map(|(x, y)| x * cos + y * sin).fold(0.0, f64::max);
+                // A twelfth of the unit disc lies beyond 0.724 of its radius.
+                assert!(widest > 0.724, "{widest}");
+                let in_pixel = samples
+                    .iter()
+                    .map(|[.., c, d]| (c - 0.5) * cos + (d - 0.5) * sin);
+                assert!(in_pixel.fold(0.0, f64::max) > 0.38);
+            }
+            assert!(samples.iter().flatten().all(|x| (0.0..1.0).contains(x)));
+        }
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Four rays through a lens at once: their roots and divisions, one behind the other, take longer than all else.
 
-use super::{LensSampler, NextRays, STEPS};
-use std::ops::Range;
+use super::{LensSampler, NextRays};
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
 use strahl_simd::{Isa, Simd, dispatch};
@@ -44,64 +43,52 @@ impl FourRays {
         })
     }
 
-    /// Appends the rays with these numbers at a position, with the bits of [`LensSampler::ray`]. Returns `false` if the direction of one
+    /// Appends the rays of samples at a position, with the bits of [`LensSampler::ray`]. Returns `false` if the direction of one
     /// of them has no length or is not finite; what it has appended is of no use then.
-    pub(super) fn push(
-        &self,
-        numbers: Range<u32>,
-        shift: [f64; 4],
-        at: [f64; 2],
-        rays: &mut NextRays,
-    ) -> bool {
-        dispatch!(Simd::best(), isa => self.push_with(isa, numbers, shift, at, rays))
+    pub(super) fn push(&self, samples: &[[f64; 4]], at: [f64; 2], rays: &mut NextRays) -> bool {
+        dispatch!(Simd::best(), isa => self.push_with(isa, samples, at, rays))
     }
 
     #[inline(always)]
     fn push_with<I: Isa>(
         &self,
         isa: I,
-        numbers: Range<u32>,
-        shift: [f64; 4],
+        samples: &[[f64; 4]],
         at: [f64; 2],
         rays: &mut NextRays,
     ) -> bool {
-        let mut first = numbers.start;
-        while first < numbers.end {
-            let mut index = [0.0; 4];
-            for (number, index) in (first..first + 4).zip(&mut index) {
-                *index = f64::from(number);
+        for four in samples.chunks(4) {
+            // The places behind the last sample stay the corner of the cube: those rays are left out.
+            let mut coordinates = [[0.0; 4]; 4];
+            for (lane, sample) in four.iter().enumerate() {
+                for (coordinate, x) in coordinates.iter_mut().zip(sample) {
+                    coordinate[lane] = *x;
+                }
             }
-            let Some((origins, directions)) = self.rays(isa, isa.load(&index), shift, at) else {
+            let Some((origins, directions)) = self.rays(isa, &coordinates, at) else {
                 return false;
             };
             let (origins, directions) = (stored(isa, origins), stored(isa, directions));
-            for lane in 0..(numbers.end - first).min(4) as usize {
+            for lane in 0..four.len() {
                 let [origin, direction] =
                     [&origins, &directions].map(|v| DVec3::new(v[0][lane], v[1][lane], v[2][lane]));
                 rays.push(Some(Ray::new(origin, direction)));
             }
-            first += 4;
         }
         true
     }
 
-    /// The origins and the directions of the rays with these numbers: step by step what [`LensSampler::ray`] does.
+    /// The origins and the directions of the rays of four samples, given coordinate by coordinate: step by step what [`LensSampler::ray`] does.
     #[inline(always)]
     fn rays<I: Isa>(
         &self,
         isa: I,
-        numbers: I::F64x4,
-        shift: [f64; 4],
+        [a, b, c, d]: &[[f64; 4]; 4],
         [x, y]: [f64; 2],
     ) -> Option<(Vectors<I>, Vectors<I>)> {
         let n = |number: f64| isa.splat(number);
         let zero = n(0.0);
-        let mut sample = [zero; 4];
-        for k in 0..4 {
-            let sum = isa.add(n(shift[k]), isa.mul(numbers, n(STEPS[k])));
-            sample[k] = isa.sub(sum, isa.floor(sum));
-        }
-        let [a, b, c, d] = sample;
+        let (a, b, c, d) = (isa.load(a), isa.load(b), isa.load(c), isa.load(d));
         let radius = isa.sqrt(a);
         let [sin, cos] = det::sines_and_cosines(isa, isa.mul(n(std::f64::consts::TAU), b));
         let (lens_x, lens_y) = (isa.mul(radius, cos), isa.mul(radius, sin));
