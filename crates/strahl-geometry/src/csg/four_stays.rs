@@ -2,7 +2,6 @@
 
 use super::leaf::Leaf;
 use crate::Shape;
-use crate::blocks::LANES;
 use crate::blocks::convex::{FourLines, FourRays, FourSpans};
 use crate::primitives::convex::Stay;
 use strahl_simd::Isa;
@@ -16,21 +15,11 @@ pub(super) struct FourStays {
 }
 
 impl FourStays {
-    /// Lines that miss the shape.
-    pub(super) const MISSED: Self = Self {
-        spans: FourSpans {
-            known: 0b1111,
-            only_enter: 0,
-            met: 0,
-            enter: [0.0; LANES],
-            exit: [0.0; LANES],
-            enter_facet: [0; LANES],
-            exit_facet: [0; LANES],
-            enter_leaf: [0; LANES],
-            exit_leaf: [0; LANES],
-        },
-        outside: 0,
-    };
+    /// Makes them lines that miss the shape.
+    #[inline(always)]
+    pub(super) fn set_missed(&mut self) {
+        (self.spans.known, self.spans.met, self.outside) = (0b1111, 0, 0);
+    }
 
     /// The same if all but these lanes miss the shape's box.
     #[inline(always)]

@@ -63,6 +63,12 @@ impl Search<'_> {
             out.set(node.far);
             return Ok(());
         }
+        self.met(node, out)
+    }
+
+    /// The same for a node that the ray may meet.
+    #[inline(always)]
+    fn met(&mut self, node: &Node, out: &mut Line) -> Result<(), TooClose> {
         match node.kind {
             Kind::Leaf(number) => self.leaf(number, out),
             Kind::Operation(rule) => self.operation(node, rule, out),
@@ -70,27 +76,39 @@ impl Search<'_> {
     }
 
     fn operation(&mut self, node: &Node, rule: Rule, out: &mut Line) -> Result<(), TooClose> {
-        out.set(rule.neutral());
+        let neutral = rule.neutral();
+        out.set(neutral);
         let mut operand = Line::default();
         for place in node.first..node.end {
             let number = self.csg.operand(place).unwrap_or_default();
+            let Some(node) = self.csg.node(number) else {
+                return Err(TooClose);
+            };
+            if !self.tree.may_meet(number, self.place) {
+                if node.far != neutral {
+                    out.set(node.far);
+                    return Ok(());
+                }
+                continue;
+            }
             if out.ends.is_empty() {
-                self.node(number, out)?;
+                self.met(node, out)?;
             } else {
-                self.node(number, &mut operand)?;
+                self.met(node, &mut operand)?;
                 match operand.constant() {
                     None => self.query.combine(rule, out, &operand)?,
-                    Some(inside) if inside == rule.neutral() => {}
+                    Some(inside) if inside == neutral => {}
                     Some(inside) => out.set(inside),
                 }
             }
-            if out.constant() == Some(!rule.neutral()) {
+            if out.constant() == Some(!neutral) {
                 return Ok(());
             }
         }
         Ok(())
     }
 
+    #[inline(always)]
     fn leaf(&mut self, number: u32, out: &mut Line) -> Result<(), TooClose> {
         let Some(leaf) = self.csg.leaf(number) else {
             return Err(TooClose);
@@ -111,6 +129,7 @@ impl Search<'_> {
     }
 
     /// The same for a shape that lists its crossings.
+    #[inline(never)]
     fn listed(
         &mut self,
         leaf: &Leaf,
@@ -187,16 +206,13 @@ impl Query<'_> {
 
     /// Combines what the ray is inside of with another operand.
     fn combine(&self, rule: Rule, line: &mut Line, other: &Line) -> Result<(), TooClose> {
-        let holds = |a: bool, b: bool| match rule {
-            Rule::Intersection => a && b,
-            Rule::Union | Rule::Merge => a || b,
-        };
+        // A union; and an intersection is the complement of the union of complements.
+        let neutral = rule.neutral();
+        let holds = |a: bool, b: bool| ((a != neutral) | (b != neutral)) != neutral;
         let (mut a, mut b) = (line.inside, other.inside);
         let mut state = holds(a, b);
-        let mut both = Line {
-            inside: state,
-            ends: ArrayVec::new(),
-        };
+        let inside = state;
+        let mut ends = ArrayVec::<LineEnd, MOST_ENDS>::new();
         let (mut left, mut right) = (&line.ends[..], &other.ends[..]);
         let mut before = f64::NEG_INFINITY;
         loop {
@@ -219,10 +235,12 @@ impl Query<'_> {
             before = end.t;
             if holds(a, b) != state {
                 state = !state;
-                both.ends.try_push(*end).map_err(|_| TooClose)?;
+                ends.try_push(*end).map_err(|_| TooClose)?;
             }
         }
-        *line = both;
+        // Only those that there are are copied.
+        line.set(inside);
+        line.ends.extend(ends);
         Ok(())
     }
 }

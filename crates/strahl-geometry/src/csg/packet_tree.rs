@@ -123,7 +123,13 @@ impl PacketTree {
                 Some(parent) => parent >> shift & 0b1111,
                 None => four.wanted,
             };
-            if rays != 0 && !node.quick {
+            if rays == 0 {
+                if let Kind::Leaf(number) = node.kind {
+                    self.leaves[number as usize][group].set_missed();
+                }
+                continue;
+            }
+            if !node.quick {
                 rays &= four.slabs.may_meet(isa, &node.bounds);
             }
             self.nodes[index] |= rays << shift;
@@ -133,11 +139,12 @@ impl PacketTree {
             let Some(leaf) = csg.leaf(number) else {
                 return;
             };
-            let stays = match rays {
-                0 => FourStays::MISSED,
-                _ => leaf.four_stays(isa, &four.rays).of(rays),
-            };
-            self.leaves[number as usize][group] = stays;
+            let stays = &mut self.leaves[number as usize][group];
+            if rays == 0 {
+                stays.set_missed();
+            } else {
+                *stays = leaf.four_stays(isa, &four.rays).of(rays);
+            }
             // Nothing is left of an intersection outside of an operand.
             let spans = &stays.spans;
             let outside = match leaf.negative {
