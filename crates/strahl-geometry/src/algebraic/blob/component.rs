@@ -134,6 +134,18 @@ impl BlobComponent {
         Aabb::new(low - reach, high + reach).padded(rounding)
     }
 
+    /// The center and the radius of a ball around the region where its field is not zero.
+    pub(super) fn ball(&self) -> (DVec3, f64) {
+        let back = self.linear.inverse();
+        let half_axis = back * DVec3::new(0.0, 0.0, 0.5 * self.length);
+        // The length of the longest image of a unit vector is the root of the largest eigenvalue, which no sum of a row exceeds.
+        let square = back.transpose() * back;
+        let [x, y, z] =
+            [square.x_axis, square.y_axis, square.z_axis].map(|v| v.abs().element_sum());
+        let radius = x.max(y).max(z).sqrt() + half_axis.length();
+        (self.center + half_axis, radius)
+    }
+
     /// The box around all points where the field is at least a part of the strength, which must be positive.
     pub(super) fn bounds_of(&self, part: f64) -> Aabb {
         // (1 - d²)² >= part.

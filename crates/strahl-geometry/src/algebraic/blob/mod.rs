@@ -1,5 +1,6 @@
 //! Blobs: the surface where the fields of several sources add up to a threshold.
 
+mod balls;
 mod component;
 mod walk;
 
@@ -11,6 +12,7 @@ use crate::primitives::{check_positive, point_error};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
+use balls::Balls;
 use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
@@ -27,15 +29,23 @@ use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 pub struct Blob {
     threshold: f64,
     components: Vec<BlobComponent>,
-    /// Over the components, if there are many.
-    hierarchy: Option<Bvh2>,
+    index: Index,
     /// The box around all attracting components.
     reach: Aabb,
     /// The box around the surface.
     bounds: Aabb,
 }
 
-/// Up to this many components are tested one by one.
+/// How the components are found that a ray or a point may reach.
+#[derive(Clone, Debug)]
+enum Index {
+    /// Those of a few are looked at four by four.
+    Balls(Balls),
+    /// Those of many are found in a tree.
+    Tree(Bvh2),
+}
+
+/// Up to this many components are few.
 const LIST_MAX: usize = 16;
 
 /// Blobs of more components have the box around all of them.
@@ -57,7 +67,10 @@ impl Blob {
                 ..=TIGHTENED => tightened(threshold, &components, &boxes),
                 _ => reach,
             },
-            hierarchy: (components.len() > LIST_MAX).then(|| Bvh2::build(&boxes)),
+            index: match components.len() {
+                ..=LIST_MAX => Index::Balls(Balls::around(&components)),
+                _ => Index::Tree(Bvh2::build(&boxes)),
+            },
             components,
         }
     }
@@ -89,14 +102,20 @@ impl Blob {
     /// Calls `visit` with the number of each component whose field reaches a point, the field there and its gradient, in
     /// ascending order of the numbers.
     pub fn fields_at(&self, point: DVec3, mut visit: impl FnMut(usize, f64, DVec3)) {
-        let Some(hierarchy) = &self.hierarchy else {
-            for (i, component) in self.components.iter().enumerate() {
-                let (field, gradient) = component.field(point);
-                if field != 0.0 {
-                    visit(i, field, gradient);
+        let tree = match &self.index {
+            Index::Tree(tree) => tree,
+            Index::Balls(balls) => {
+                for i in bits_of(balls.holding(point)) {
+                    let Some(component) = self.components.get(i) else {
+                        continue;
+                    };
+                    let (field, gradient) = component.field(point);
+                    if field != 0.0 {
+                        visit(i, field, gradient);
+                    }
                 }
+                return;
             }
-            return;
         };
         let mut found = Found {
             blob: self,
@@ -106,7 +125,7 @@ impl Blob {
         let ray = Ray::new(point, DVec3::X);
         // A ray that is hardly longer than a point.
         let range = Interval::new(-f64::MIN_POSITIVE, f64::MIN_POSITIVE);
-        hierarchy.traverse(&ray, range, &mut found, &mut TraversalStats::default());
+        tree.traverse(&ray, range, &mut found, &mut TraversalStats::default());
         found.list.sort_by_key(|(i, ..)| *i);
         for (i, field, gradient) in found.list {
             visit(i as usize, field, gradient);
@@ -123,14 +142,24 @@ impl Blob {
         (field, gradient)
     }
 
-    /// The sum of the magnitudes of the fields at a point.
-    fn magnitude(&self, point: DVec3) -> f64 {
-        let mut sum = self.threshold;
-        self.fields_at(point, |i, _, _| {
-            sum += self.components.get(i).map_or(0.0, |c| c.strength().abs());
+    /// The gradient of the field at a point, and the sum of the threshold and the strengths of the fields that reach it.
+    fn gradient_and_magnitude(&self, point: DVec3) -> (DVec3, f64) {
+        let (mut gradient, mut magnitude) = (DVec3::ZERO, self.threshold);
+        self.fields_at(point, |i, _, g| {
+            gradient += g;
+            magnitude += self.components[i].strength().abs();
         });
-        sum
+        (gradient, magnitude)
     }
+}
+
+/// The numbers of the bits that are set.
+fn bits_of(mut set: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = set.trailing_zeros();
+        set &= set.wrapping_sub(1);
+        (bit < u32::BITS).then_some(bit as usize)
+    })
 }
 
 /// The box around the surface: where as many as n attracting components overlap, one of them must have an nth of the threshold at least.
@@ -235,10 +264,10 @@ impl Primitive for Blob {
         let step = gradient * ((self.threshold - field) / gradient.length_squared());
         let size = self.reach.size().max_element();
         let position = if step.length() < size { p + step } else { p };
-        let (_, gradient) = self.field(position);
+        let (gradient, magnitude) = self.gradient_and_magnitude(position);
         let n = (-gradient).normalize_or(DVec3::Y);
         let (across, most) = (
-            gamma(32) * self.magnitude(position) / gradient.length(),
+            gamma(32) * magnitude / gradient.length(),
             gamma(1).sqrt() * size,
         );
         let across = if across < most { across } else { most };

@@ -113,9 +113,10 @@ fn a_capsule_is_a_cylinder_with_half_balls() {
 
 #[test]
 fn the_hierarchy_changes_nothing() {
-    let tree = many(60);
+    let tree = many(30);
+    assert!(matches!(tree.index, Index::Tree(_)));
     let list = Blob {
-        hierarchy: None,
+        index: Index::Balls(Balls::around(&tree.components)),
         ..tree.clone()
     };
     let mut random = crate::conformance::Random::new(5);
@@ -160,4 +161,36 @@ fn blobs_without_a_surface_are_refused() {
         Err(GeometryError::NotFinite { .. } | GeometryError::Degenerate { .. })
     ));
     assert_eq!(blob(0.1, vec![ball(1.0)]), Ok(()));
+}
+
+#[test]
+fn balls_hold_all_that_the_fields_reach() {
+    let mut random = crate::conformance::Random::new(78);
+    let (mut held, mut met, mut all) = (0, 0, 0);
+    for count in 1..=LIST_MAX as u32 {
+        for scale in [1e-9, 1.0, 1e9] {
+            let stretch = Transform::try_scale(DVec3::new(1.0, 0.6, 1.7) * scale);
+            let map = Transform::rotate(random.direction(), 1.0).then(&stretch.expect("regular"));
+            let components = many(count).components;
+            let components: Vec<_> = components.iter().map(|c| c.transformed(&map)).collect();
+            let balls = Balls::around(&components);
+            for _ in 0..50 {
+                let (point, along) = (random.cube() * 1.5 * scale, random.direction());
+                let line = balls.met_by(point, along);
+                let place = balls.holding(point);
+                for (i, component) in components.iter().enumerate() {
+                    let has = |set: u32| set >> i & 1 == 1;
+                    let mut chords = 0;
+                    let inner = component.inner(point, along);
+                    component.stretches(&inner, |_, _| chords += 1);
+                    assert!(chords == 0 || has(line), "{component:?} {point} {along}");
+                    assert!(component.field(point).0 == 0.0 || has(place));
+                    met += u32::from(has(line));
+                    held += u32::from(has(place));
+                    all += 1;
+                }
+            }
+        }
+    }
+    assert!(held * 2 < all && met * 3 < all * 2, "{held} {met} {all}");
 }

@@ -1,6 +1,6 @@
 use super::super::event::{Event, Question};
 use super::component::{Chord, Inner, Part};
-use super::{Blob, BlobComponent};
+use super::{Blob, BlobComponent, Index, bits_of};
 use std::ops::ControlFlow;
 use strahl_accel::{Accelerator, TraversalStats, Visitor};
 use strahl_math::error::gamma;
@@ -134,19 +134,19 @@ impl Blob {
             along,
             list: &mut pieces.list,
         };
-        match &self.hierarchy {
-            Some(hierarchy) => {
+        match &self.index {
+            Index::Balls(balls) => {
+                for id in bits_of(balls.met_by(start, along)) {
+                    collector.visit(id as u32, f64::INFINITY);
+                }
+            }
+            Index::Tree(tree) => {
                 let ray = Ray::new(start, along);
                 let behind = if question.on_surface { 0.0 } else { clip.min };
                 let length = clip.max - behind;
                 // Slightly longer than the way through the box: rounding must not lose an interval.
                 let range = Interval::new(-0.01 * length, 1.01 * length);
-                hierarchy.traverse(&ray, range, &mut collector, &mut TraversalStats::default());
-            }
-            None => {
-                for id in 0..self.components.len() as u32 {
-                    collector.visit(id, f64::INFINITY);
-                }
+                tree.traverse(&ray, range, &mut collector, &mut TraversalStats::default());
             }
         }
         if question.on_surface {
