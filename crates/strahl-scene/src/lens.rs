@@ -10,7 +10,8 @@ pub struct Lens {
     pub focal_point: DVec3,
     /// Fewest rays of a position in the picture.
     pub min_samples: u32,
-    /// Most rays of a position in the picture.
+    /// Most rays of a position in the picture, as POV-Ray counts them: three quarters of them have its error, and more are not traced unless
+    /// `min_samples` is more.
     pub max_samples: u32,
     /// The confidence, from 0 to less than 1, that the colours of the rays do not vary more than `variance` allows. It has little
     /// influence.
