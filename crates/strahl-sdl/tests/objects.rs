@@ -1149,6 +1149,30 @@ fn meshes_share_vertices_and_split_by_texture() {
 }
 
 #[test]
+fn a_mesh_without_uv_vectors_has_one_entry() {
+    let coordinates = |lists: &str| {
+        let faces = "face_indices { 1, <0, 1, 2> }";
+        let text = format!("mesh2 {{ vertex_vectors {{ 3, 0, x, y }} {lists}");
+        let text = text.replace("faces", faces) + " }";
+        let Shape::TriangleMesh(mesh) = shape(&text) else {
+            panic!("a mesh");
+        };
+        [0, 1, 2].map(|vertex| mesh.uv(vertex))
+    };
+    let zeros = coordinates("uv_vectors { 1, 0 } faces uv_indices { 1, 0 }");
+    assert!(zeros.iter().all(Option::is_some));
+    // As Wings 3D writes it.
+    assert_eq!(
+        coordinates("uv_vectors { 0} faces uv_indices { 1, <0,0,0>}"),
+        zeros
+    );
+    assert_eq!(coordinates("faces uv_indices { 1, 0 }"), zeros);
+    assert_eq!(coordinates("uv_vectors { 0 } faces"), [None; 3]);
+    let refused = "mesh2 { vertex_vectors { 3, 0, x, y } face_indices { 1, <0, 1, 2> } uv_indices { 1, <0, 1, 0> } }";
+    assert!(errors(refused)[0].contains("there is no entry 1 in uv_vectors"));
+}
+
+#[test]
 fn closed_meshes_are_solids_however_they_are_wound() {
     let vertices = "vertex_vectors { 4, 0, x, y, z }";
     for faces in [

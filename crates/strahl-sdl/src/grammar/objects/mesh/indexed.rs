@@ -45,6 +45,10 @@ pub(in crate::grammar::objects) fn mesh2(p: &mut Parser<'_>) -> PResult<Entity> 
         let faces = lists.normal_faces.as_ref().map(Vec::len);
         let normals = p.numbering(place, "normal", lists.normals.len(), faces, &lists)?;
         let faces = lists.uv_faces.as_ref().map(Vec::len);
+        // As in POV-Ray (measured). Wings 3D writes `uv_vectors { 0 }` and indices of 0 for models without texture coordinates.
+        if faces.is_some() && lists.uvs.is_empty() {
+            lists.uvs.push([0.0; 2]);
+        }
         let uvs = p.numbering(place, "uv", lists.uvs.len(), faces, &lists)?;
         let mut entity = p.mesh_object(lists.into_parts(normals, uvs), place)?;
         p.modifiers(&mut entity)?;
@@ -87,7 +91,7 @@ impl Parser<'_> {
                 lists.normal_faces = Some(faces);
             }
             Word::UvIndices => {
-                let count = lists.uvs.len();
+                let count = lists.uvs.len().max(1);
                 let faces = self.counted_list(|p| p.face(count, "uv_vectors"))?;
                 lists.uv_faces = Some(faces);
             }
