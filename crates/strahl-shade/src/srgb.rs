@@ -67,20 +67,27 @@ pub fn encode_u8(linear: f32) -> u8 {
 /// Appends [`encode_u8`] of each sample of linear light.
 pub fn push_u8(linear: &[f32], codes: &mut Vec<u8>) {
     let table = Codes::get();
-    codes.extend(linear.iter().map(|x| table.of(*x)));
+    codes.reserve(linear.len());
+    let (blocks, rest) = linear.as_chunks();
+    for block in blocks {
+        codes.extend_from_slice(&table.of_block(block));
+    }
+    codes.extend(rest.iter().map(|x| table.of(*x)));
 }
+
+/// The number of samples that are looked up together.
+const BLOCK: usize = 32;
 
 /// Codes by the leading bits of a number: the number of powers of two below 1 that are told apart, and of parts of each. At most
 /// one code begins within a part.
-const OCTAVES: usize = 13;
-const PARTS: usize = 256;
+const OCTAVES: usize = 16;
+const PARTS: usize = 128;
 
 /// The 8-bit codes, found without a power.
 struct Codes {
-    /// Where the code after each begins; after the last, infinity.
-    ends: [f32; 256],
-    /// The code of the smallest number of each part of each octave from 2⁻¹³ to 1.
-    lowest: [u8; OCTAVES * PARTS],
+    /// For each part of each octave from 2⁻¹⁶ to 1, what is added to a number's bits below those of the part: their sum has the code above
+    /// these bits. It is the code of the part's smallest number, plus what makes a number carry over from which on the next code begins.
+    codes: [u32; OCTAVES * PARTS],
 }
 
 impl Codes {
@@ -92,39 +99,60 @@ impl Codes {
     fn new() -> Self {
         let mut middles: [f64; 255] = std::array::from_fn(|code| (code as f64 + 0.5) / 255.0);
         decode_all(&mut middles);
-        let mut ends = [f32::INFINITY; 256];
-        for (end, middle) in ends.iter_mut().zip(middles) {
-            *end = middle as f32;
-        }
+        // The bits of positive numbers are in the order of the numbers.
+        let mut starts = middles
+            .into_iter()
+            .map(|middle| (middle as f32).to_bits())
+            .peekable();
         let mut code = 0;
-        let lowest = std::array::from_fn(|index| {
-            while Self::start_of(index) >= ends[usize::from(code)] {
+        let codes = std::array::from_fn(|index| {
+            let first = Self::ORIGIN + ((index as u32) << Self::SHIFT);
+            while starts.next_if(|start| *start <= first).is_some() {
                 code += 1;
             }
-            code
+            let ahead = starts.peek().map_or(u32::MAX, |start| start - first);
+            (code << Self::SHIFT) + (1u32 << Self::SHIFT).saturating_sub(ahead)
         });
-        Self { ends, lowest }
-    }
-
-    /// The smallest number of a part.
-    fn start_of(index: usize) -> f32 {
-        f32::from_bits(Self::ORIGIN + ((index as u32) << Self::SHIFT))
+        Self { codes }
     }
 
     /// The bits below those that number a part.
     const SHIFT: u32 = 23 - PARTS.ilog2();
-    /// The bits of 2⁻¹³, whose code is 0.
+    /// The bits of 2⁻¹⁶, whose code is 0.
     const ORIGIN: u32 = (127 - OCTAVES as u32) << 23;
 
-    #[inline]
-    fn of(&self, linear: f32) -> u8 {
+    /// The bits of the number nearest to a sample that the table has, above [`Codes::ORIGIN`].
+    #[inline(always)]
+    fn place(linear: f32) -> u32 {
         // In this order NaN becomes the smallest number, too.
         let within = linear
             .max(f32::from_bits(Self::ORIGIN))
             .min(1.0f32.next_down());
-        let index = (within.to_bits() - Self::ORIGIN) >> Self::SHIFT;
-        let code = self.lowest[index as usize];
-        code + u8::from(within >= self.ends[usize::from(code)])
+        within.to_bits() - Self::ORIGIN
+    }
+
+    #[inline(always)]
+    fn at(&self, place: u32) -> u8 {
+        // The remainder is there for the compiler, which then leaves out a comparison.
+        let index = (place >> Self::SHIFT) as usize % (OCTAVES * PARTS);
+        let below = place % (1 << Self::SHIFT);
+        ((self.codes[index] + below) >> Self::SHIFT) as u8
+    }
+
+    #[inline]
+    fn of(&self, linear: f32) -> u8 {
+        self.at(Self::place(linear))
+    }
+
+    /// The codes of a block of samples.
+    #[inline]
+    fn of_block(&self, linear: &[f32; BLOCK]) -> [u8; BLOCK] {
+        // First all places, which vector instructions find, then their codes.
+        let mut places = [0; BLOCK];
+        for (place, x) in places.iter_mut().zip(linear) {
+            *place = Self::place(*x);
+        }
+        places.map(|place| self.at(place))
     }
 }
 
@@ -201,6 +229,38 @@ mod tests {
         let mut codes = vec![7];
         push_u8(&[0.5, 0.0, 1.0], &mut codes);
         assert_eq!(codes, [7, 188, 0, 255]);
+    }
+
+    #[test]
+    fn codes_begin_at_their_borders_and_nowhere_else() {
+        let code = |encoded: f64| (decode(encoded / 255.0) as f32).to_bits();
+        let mut codes = vec![];
+        let mut all = |bits: std::ops::Range<u32>, code: u8| {
+            for first in bits.clone().step_by(1 << 16) {
+                let samples: Vec<f32> = (first..bits.end.min(first + (1 << 16)))
+                    .map(f32::from_bits)
+                    .collect();
+                codes.clear();
+                push_u8(&samples, &mut codes);
+                assert_eq!(codes.len(), samples.len());
+                let wrong = codes.iter().position(|found| *found != code);
+                assert_eq!(wrong.map(|index| samples[index]), None, "{code}");
+            }
+        };
+        // All numbers from 2e-5 to a little above 1.
+        let mut first = 2e-5f32.to_bits();
+        for number in 0..255u8 {
+            let end = code(f64::from(number) + 0.5);
+            all(first..end, number);
+            first = end;
+        }
+        all(first..1.001f32.to_bits(), 255);
+        // Some of the others.
+        let others = (0..1 << 16).map(|upper: u32| f32::from_bits(upper << 16 | 0x5A5A));
+        for x in others.filter(|x| !(2e-5..1.0).contains(x)) {
+            let clipped = if x >= 1.0 { 255 } else { 0 };
+            assert_eq!(encode_u8(x), clipped, "{x}");
+        }
     }
 
     #[test]
