@@ -26,7 +26,6 @@ use crate::scene::RenderScene;
 use crate::tiles::TileOrder;
 use crate::trace::{BatchMemory, RayCounts, TraceSettings};
 use crate::transport::Transport;
-use arrayvec::ArrayVec;
 use pixels::PixelTracer;
 use strahl_accel::{PACKET, TraversalStats};
 use strahl_scene::WorkingSpace;
@@ -244,41 +243,79 @@ struct Samples {
     clear: f64,
 }
 
-/// A pixel as the film holds it.
-#[derive(Clone, Copy, Debug)]
+/// Pixels as the film holds them.
+#[derive(Clone, Debug, Default, PartialEq)]
 struct Shown {
-    color: [f32; 3],
-    alpha: f32,
+    colors: Vec<[f32; 3]>,
+    /// One for each colour if the film has an alpha channel, otherwise none.
+    alphas: Vec<f32>,
 }
 
-impl Shown {
+/// How means of samples become pixels.
+#[derive(Clone, Copy, Debug)]
+struct Showing {
+    /// The space of the means.
+    space: WorkingSpace,
+    /// Whether the film has an alpha channel.
+    alpha: bool,
+}
+
+impl Showing {
+    fn of(options: &RenderOptions) -> Self {
+        Self {
+            space: options.trace.space(),
+            alpha: options.alpha,
+        }
+    }
+
     /// A pixel with the mean of its samples.
-    fn of(mean: Sample, space: WorkingSpace) -> Self {
-        Self::all(&[mean], space)[0]
+    fn one(self, mean: Sample) -> ([f32; 3], f32) {
+        let mut color = [[0.0; 3]];
+        self.decode_few(&[mean], &mut color);
+        (color[0], alpha(&mean))
     }
 
     /// Pixels with the means of their samples. Means are colours of the scene's working space, as in POV-Ray (measured): where it is not linear,
     /// edges are darker than means of linear light would be.
-    fn all(means: &[Sample], space: WorkingSpace) -> Vec<Self> {
-        let mut all = Vec::with_capacity(means.len());
-        for means in means.chunks(PACKET) {
-            let share = |mean: &Sample| match space {
-                WorkingSpace::Linear => 1.0,
-                _ => covered(mean),
-            };
-            let shares: ArrayVec<f64, PACKET> = means.iter().map(share).collect();
-            let colors = means.iter().zip(&shares);
-            let mut colors: ArrayVec<Color, PACKET> =
-                colors.map(|(mean, share)| mean.color / *share).collect();
-            space.decode_all(&mut colors);
-            let pixels = colors.iter().zip(&shares).zip(means);
-            all.extend(pixels.map(|((color, share), mean)| Self {
-                color: (*color * *share).to_f32(),
-                alpha: (1.0 - mean.clear) as f32,
-            }));
-        }
-        all
+    fn all(self, means: &[Sample]) -> Shown {
+        let colors = match self.space {
+            WorkingSpace::Linear => means.iter().map(|mean| mean.color.to_f32()).collect(),
+            _ => {
+                let mut colors = vec![[0.0; 3]; means.len()];
+                for (means, colors) in means.chunks(PACKET).zip(colors.chunks_mut(PACKET)) {
+                    self.decode_few(means, colors);
+                }
+                colors
+            }
+        };
+        let alphas = match self.alpha {
+            true => means.iter().map(alpha).collect(),
+            false => vec![],
+        };
+        Shown { colors, alphas }
     }
+
+    /// The colours of at most [`PACKET`] pixels.
+    fn decode_few(self, means: &[Sample], colors: &mut [[f32; 3]]) {
+        let share = |mean: &Sample| match self.space {
+            WorkingSpace::Linear => 1.0,
+            _ => covered(mean),
+        };
+        let mut components = [[0.0; 3]; PACKET];
+        for (place, mean) in components.iter_mut().zip(means) {
+            *place = (mean.color / share(mean)).to_array();
+        }
+        let used = &mut components[..means.len().min(PACKET)];
+        self.space.decode_components(used.as_flattened_mut());
+        for ((color, decoded), mean) in colors.iter_mut().zip(used).zip(means) {
+            *color = (Color::from(*decoded) * share(mean)).to_f32();
+        }
+    }
+}
+
+/// How much a pixel covers what lies behind the picture.
+fn alpha(mean: &Sample) -> f32 {
+    (1.0 - mean.clear) as f32
 }
 
 /// The share of a pixel that has its colour: what does not show the background. The colour is that of this share times the share, so it is
@@ -401,45 +438,49 @@ impl Region {
 }
 
 impl Film {
-    fn set(&mut self, (x, y): (u32, u32), shown: Shown) {
-        let index = self.region.index(x, y);
-        self.pixels[index] = shown.color;
-        if let Some(alpha) = &mut self.alpha {
-            alpha[index] = shown.alpha;
-        }
-    }
-
     /// Writes the pixels of a tile, as far as they lie in the film.
-    fn set_tile(&mut self, tile: Region, values: &[Shown]) {
+    fn set_tile(&mut self, tile: Region, shown: &Shown) {
         let Some(part) = tile.intersection(&self.region) else {
             return;
         };
         let width = part.width as usize;
         for y in part.y..part.y + part.height {
-            let row = &values[tile.index(part.x, y)..][..width];
-            let start = self.region.index(part.x, y);
-            for (place, value) in self.pixels[start..start + width].iter_mut().zip(row) {
-                *place = value.color;
-            }
+            let (from, to) = (tile.index(part.x, y), self.region.index(part.x, y));
+            self.pixels[to..to + width].copy_from_slice(&shown.colors[from..from + width]);
             if let Some(alpha) = &mut self.alpha {
-                for (place, value) in alpha[start..start + width].iter_mut().zip(row) {
-                    *place = value.alpha;
+                alpha[to..to + width].copy_from_slice(&shown.alphas[from..from + width]);
+            }
+        }
+    }
+
+    /// Writes the pixels of a tile that have a new value, as far as they lie in the film.
+    fn set_some(&mut self, tile: Region, values: &[Option<Sample>], showing: Showing) {
+        let means: Vec<Sample> = values.iter().flatten().copied().collect();
+        let shown = showing.all(&means);
+        let places = tile.positions().zip(values);
+        let places = places.filter_map(|(place, value)| value.map(|_| place));
+        for (number, (x, y)) in places.enumerate() {
+            if self.region.contains(x, y) {
+                let index = self.region.index(x, y);
+                self.pixels[index] = shown.colors[number];
+                if let Some(alpha) = &mut self.alpha {
+                    alpha[index] = shown.alphas[number];
                 }
             }
         }
     }
 
     /// Shows a sample in all pixels of a block, as far as they lie in the film.
-    fn fill(&mut self, block: Region, shown: Shown) {
+    fn fill(&mut self, block: Region, (color, alpha): ([f32; 3], f32)) {
         let Some(block) = block.intersection(&self.region) else {
             return;
         };
         let width = block.width as usize;
         for y in block.y..block.y + block.height {
             let start = self.region.index(block.x, y);
-            self.pixels[start..start + width].fill(shown.color);
-            if let Some(alpha) = &mut self.alpha {
-                alpha[start..start + width].fill(shown.alpha);
+            self.pixels[start..start + width].fill(color);
+            if let Some(alphas) = &mut self.alpha {
+                alphas[start..start + width].fill(alpha);
             }
         }
     }

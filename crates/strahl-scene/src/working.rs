@@ -32,21 +32,29 @@ impl WorkingSpace {
         if self == Self::Linear {
             return;
         }
-        for few in colors.chunks_mut(FEW) {
-            let mut values = [0.0; 3 * FEW];
-            let (places, _) = values.as_chunks_mut::<3>();
+        for few in colors.chunks_mut(FEW / 3) {
+            let mut components = [0.0; FEW];
+            let (places, _) = components.as_chunks_mut::<3>();
             for (place, color) in places.iter_mut().zip(few.iter()) {
                 *place = color.to_array();
             }
-            let used = &mut values[..3 * few.len()];
-            match self {
-                Self::Linear => {}
-                Self::Srgb => srgb::decode_all(used),
-                Self::Gamma(gamma) => gamma_all(used, gamma),
-            }
-            let (places, _) = values.as_chunks::<3>();
+            self.decode_components(&mut components[..3 * few.len()]);
+            let (places, _) = components.as_chunks::<3>();
             for (color, [r, g, b]) in few.iter_mut().zip(places) {
                 *color = Color::new(*r, *g, *b);
+            }
+        }
+    }
+
+    /// [`WorkingSpace::decode`] for the components of many colours, with the same bits.
+    pub fn decode_components(self, components: &mut [f64]) {
+        match self {
+            Self::Linear => {}
+            Self::Srgb => srgb::decode_all(components),
+            Self::Gamma(gamma) => {
+                for few in components.chunks_mut(FEW) {
+                    gamma_all(few, gamma);
+                }
             }
         }
     }
@@ -62,12 +70,12 @@ impl WorkingSpace {
     }
 }
 
-/// The number of colours that are decoded at a time.
-const FEW: usize = 16;
+/// The number of components that are decoded at a time.
+const FEW: usize = 48;
 
-/// Raises the positive ones of at most three times [`FEW`] values to a power.
+/// Raises the positive ones of at most [`FEW`] values to a power.
 fn gamma_all(values: &mut [f64], gamma: f64) {
-    let mut powers = [1.0; 3 * FEW];
+    let mut powers = [1.0; FEW];
     for (power, value) in powers.iter_mut().zip(values.iter()) {
         if *value > 0.0 {
             *power = *value;
@@ -118,9 +126,15 @@ mod tests {
             for count in [1, 16, 17, 50] {
                 let mut all = colors[..count].to_vec();
                 space.decode_all(&mut all);
-                for (decoded, color) in all.iter().zip(&colors) {
-                    let bits = |c: Color| c.to_array().map(f64::to_bits);
-                    assert_eq!(bits(*decoded), bits(space.decode(*color)), "{space:?}");
+                let components = colors[..count].iter().flat_map(|c| c.to_array());
+                let mut components: Vec<f64> = components.collect();
+                space.decode_components(&mut components);
+                let components = components.as_chunks::<3>().0;
+                for ((decoded, components), color) in all.iter().zip(components).zip(&colors) {
+                    let bits = |c: [f64; 3]| c.map(f64::to_bits);
+                    let expected = bits(space.decode(*color).to_array());
+                    assert_eq!(bits(decoded.to_array()), expected, "{space:?}");
+                    assert_eq!(bits(*components), expected, "{space:?}");
                 }
             }
         }

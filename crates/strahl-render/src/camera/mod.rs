@@ -3,6 +3,7 @@
 mod bundle;
 mod lens;
 mod mesh;
+mod square;
 mod wide;
 
 pub(crate) use bundle::{NextRays, RayBundle};

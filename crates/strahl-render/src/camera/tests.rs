@@ -1,4 +1,5 @@
 use super::*;
+use crate::film::Region;
 
 #[test]
 fn the_picture_is_not_mirrored() {
@@ -128,4 +129,34 @@ fn a_camera_normal_bends_the_rays() {
         apart > 1e-4 && (bent.direction.length() - 1.0).abs() < 1e-12,
         "{apart}"
     );
+}
+
+#[test]
+fn rays_side_by_side_have_the_bits_of_single_ones() {
+    let mut camera = Camera::perspective(
+        DVec3::new(1.0, -2.0, 0.3),
+        DVec3::new(0.1, 0.2, 3.0),
+        DVec3::Y,
+        1.1,
+    );
+    let place = (0.25, 0.7);
+    for bent in [false, true] {
+        if bent {
+            camera.projection = Projection::Fisheye { angle: 3.0 };
+        }
+        let rays = PrimaryRays::new(&camera, 10, 8);
+        for (width, height) in [(4, 4), (1, 4), (3, 2)] {
+            let square = Region {
+                x: 2,
+                y: 3,
+                width,
+                height,
+            };
+            let pixels = square.positions();
+            let ray = |(x, y)| rays.ray(f64::from(x) + place.0, f64::from(y) + place.1);
+            let single: Vec<_> = pixels.map(ray).collect();
+            assert_eq!(&rays.of_square(square, place)[..], single);
+            assert!(single.iter().any(Option::is_some));
+        }
+    }
 }

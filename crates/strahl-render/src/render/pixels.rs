@@ -153,22 +153,27 @@ impl PixelTracer<'_> {
             self.blind = mask.is_empty(square.x, square.y);
             if self.blind {
                 let same = blank(self, square.pixels() as u32);
-                for (x, y) in square.positions() {
-                    let value = same.clone();
-                    values[tile.index(x, y)] = value.unwrap_or_else(|| trace(self, x, y));
+                for y in square.y..square.y + square.height {
+                    let row = &mut values[tile.index(square.x, y)..][..square.width as usize];
+                    match &same {
+                        Some(value) => row.fill(value.clone()),
+                        None => {
+                            for (x, place) in (square.x..).zip(row) {
+                                *place = trace(self, x, y);
+                            }
+                        }
+                    }
                 }
                 continue;
             }
-            // Not collected, which would copy them all.
-            let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
-            rays.extend(
-                square
-                    .positions()
-                    .map(|(x, y)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy)),
-            );
+            let rays = self.rays.of_square(square, (dx, dy));
             let samples = self.tree.trace_packet(&rays);
-            for ((x, y), sample) in square.positions().zip(samples) {
-                values[tile.index(x, y)] = shown(*sample);
+            let width = square.width as usize;
+            for (y, samples) in (square.y..).zip(samples.chunks_exact(width)) {
+                let row = &mut values[tile.index(square.x, y)..][..width];
+                for (place, sample) in row.iter_mut().zip(samples) {
+                    *place = shown(*sample);
+                }
             }
         }
         self.end_tile(tile, None, values, Vec::new())

@@ -3,14 +3,13 @@
 use super::crew::{Ended, Turn};
 use super::plan::points;
 use super::refine::Comparison;
-use super::{Lattice, Shown, mean_of_corners};
+use super::{Lattice, Showing, Shown, TileResult, mean_of_corners};
 use crate::film::{Film, Region};
-use crate::sampling::{Quadrants, Refinement, Sample};
-use strahl_scene::WorkingSpace;
+use crate::sampling::{Quadrants, Refinement};
 
 impl Turn<'_, '_> {
-    fn space(&self) -> WorkingSpace {
-        self.options.trace.space()
+    fn showing(&self) -> Showing {
+        Showing::of(self.options)
     }
 
     /// The first pixel of the film, where lattices begin.
@@ -20,20 +19,23 @@ impl Turn<'_, '_> {
 
     /// All samples of each pixel.
     pub(super) fn pixels(self) -> Ended {
-        let space = self.space();
+        let showing = self.showing();
         self.trace(
-            |tracer, tile| tracer.centers(tile).with(|means| Shown::all(&means, space)),
-            |film, result, _| film.set_tile(result.tile, &result.values),
+            |tracer, tile| {
+                let means = tracer.centers(tile);
+                means.with(|means| vec![showing.all(&means)])
+            },
+            set_tiles,
         )
     }
 
     /// The first sample of each pixel, which later stages need.
     pub(super) fn first(self, lattice: &mut Lattice) -> Ended {
-        let space = self.space();
+        let showing = self.showing();
         self.trace(
             |tracer, tile| {
                 tracer.centers(tile).with(|samples| {
-                    let shown = Shown::all(&samples, space);
+                    let shown = showing.all(&samples);
                     vec![(samples, shown)]
                 })
             },
@@ -54,7 +56,7 @@ impl Turn<'_, '_> {
         corners: bool,
         mut lattice: Option<&mut Lattice>,
     ) -> Ended {
-        let (space, origin) = (self.space(), self.origin());
+        let (showing, origin) = (self.showing(), self.origin());
         self.trace(
             |tracer, tile| tracer.points(tile, points(tile, origin, step, known), corners),
             |film, result, _| {
@@ -62,7 +64,7 @@ impl Turn<'_, '_> {
                     if let Some(lattice) = &mut lattice {
                         lattice.put(place, *sample);
                     }
-                    film.fill(block(place, step), Shown::of(*sample, space));
+                    film.fill(block(place, step), showing.one(*sample));
                 }
             },
         )
@@ -70,7 +72,7 @@ impl Turn<'_, '_> {
 
     /// The corners of all pixels that are not known yet; a pixel is shown as the mean of its corners.
     pub(super) fn corners(self, known: Option<u32>, lattice: &mut Lattice) -> Ended {
-        let (space, origin) = (self.space(), self.origin());
+        let (showing, origin) = (self.showing(), self.origin());
         self.trace(
             |tracer, tile| match known {
                 Some(_) => tracer.points(tile, points(tile, origin, 1, known), true),
@@ -89,7 +91,7 @@ impl Turn<'_, '_> {
                     let means = part
                         .positions()
                         .map(|(x, y)| mean_of_corners(lattice.around(x, y)));
-                    film.set_tile(*part, &Shown::all(&means.collect::<Vec<_>>(), space));
+                    film.set_tile(*part, &showing.all(&means.collect::<Vec<_>>()));
                 }
             },
         )
@@ -97,7 +99,7 @@ impl Turn<'_, '_> {
 
     /// The samples of each pixel but the first, which is known.
     pub(super) fn rest(self, first: &Lattice) -> Ended {
-        let space = self.space();
+        let showing = self.showing();
         self.trace(
             |tracer, tile| {
                 let means = tracer.tile(
@@ -105,9 +107,9 @@ impl Turn<'_, '_> {
                     |_, _| None,
                     |tracer, x, y| tracer.remaining(first.at(x, y), x, y).sample(),
                 );
-                means.with(|means| Shown::all(&means, space))
+                means.with(|means| vec![showing.all(&means)])
             },
-            |film, result, _| film.set_tile(result.tile, &result.values),
+            set_tiles,
         )
     }
 
@@ -118,8 +120,8 @@ impl Turn<'_, '_> {
         first: &Lattice,
         rough: &[Quadrants],
     ) -> Ended {
-        let space = self.space();
-        let comparison = Comparison::new(refinement, space);
+        let showing = self.showing();
+        let comparison = Comparison::new(refinement, showing.space);
         let quadrants = |x, y| rough[first.region.index(x, y)];
         self.trace(
             |tracer, tile| {
@@ -129,16 +131,16 @@ impl Turn<'_, '_> {
                     pixels.into_iter().map(|pixel| pixel.map(mean)).collect()
                 })
             },
-            |film, result, _| set_some(film, result.tile, &result.values, space),
+            |film, result, _| film.set_some(result.tile, &result.values, showing),
         )
     }
 
     /// Divides the pixels whose corners differ.
     pub(super) fn divide(self, refinement: &Refinement, corners: &Lattice) -> Ended {
-        let space = self.space();
+        let showing = self.showing();
         self.trace(
             |tracer, tile| tracer.divided(tile, refinement, |x, y| corners.around(x, y)),
-            |film, result, _| set_some(film, result.tile, &result.values, space),
+            |film, result, _| film.set_some(result.tile, &result.values, showing),
         )
     }
 }
@@ -153,16 +155,9 @@ fn block((x, y): (u32, u32), step: u32) -> Region {
     }
 }
 
-/// Writes the pixels that have a new value.
-fn set_some(film: &mut Film, tile: Region, values: &[Option<Sample>], space: WorkingSpace) {
-    let means: Vec<Sample> = values.iter().flatten().copied().collect();
-    let mut shown = Shown::all(&means, space).into_iter();
-    for (place, value) in tile.positions().zip(values) {
-        if value.is_some()
-            && let Some(shown) = shown.next()
-            && film.region.contains(place.0, place.1)
-        {
-            film.set(place, shown);
-        }
+/// Writes the pixels of a tile.
+fn set_tiles(film: &mut Film, result: TileResult<Shown>, _: &[Region]) {
+    for shown in &result.values {
+        film.set_tile(result.tile, shown);
     }
 }

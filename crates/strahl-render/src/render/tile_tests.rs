@@ -1,6 +1,6 @@
 //! The size of a tile changes no bit, and no list that its rays are in.
 
-use super::{PixelTracer, RenderOptions, Shown, render};
+use super::{PixelTracer, RenderOptions, Showing, render};
 use crate::beam::BeamMask;
 use crate::camera::PrimaryRays;
 use crate::compile::{CompileOptions, compile};
@@ -36,11 +36,11 @@ fn a_tile_of_four_megapixels_has_the_bits_of_small_tiles() {
     assert!(BeamMask::of(first, &scene, &rays).is_empty(0, 0));
     let mut tracer = PixelTracer::new(&scene, &rays, &options, &());
     let tile = tracer.centers(Region::full(width, height));
-    let pixels = Shown::all(&tile.values, options.trace.space());
+    let pixels = Showing::of(&options).all(&tile.values).colors;
     assert_eq!(pixels.len(), picture.film.pixels.len());
     for (place, pixel) in tile.places().zip(&pixels) {
         assert_eq!(
-            Some(pixel.color),
+            Some(*pixel),
             picture.film.pixel(place.0, place.1),
             "{place:?}"
         );
