@@ -13,9 +13,10 @@ use crate::uses::InstanceUse;
 pub use kinds::WalkEvent;
 use kinds::{Any, Closest, Query, Transmitting, Watched};
 pub(crate) use packet::PACKET_MIN;
+use packet::PacketMemory;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator, TraversalStats, Visitor};
-use strahl_geometry::{PacketTree, RayShear, Scratch};
+use strahl_geometry::{RayShear, Scratch};
 use strahl_math::{Interval, Ray};
 use unfiltered::Unfiltered;
 use visitor::GroupVisitor;
@@ -25,8 +26,7 @@ use visitor::GroupVisitor;
 pub struct Intersector<'s> {
     pub(crate) scene: &'s RenderScene,
     pub(crate) scratch: Scratch,
-    /// What a packet meets of a CSG tree.
-    tree: PacketTree,
+    packet: PacketMemory,
     /// The cost of all queries so far.
     pub stats: TraversalStats,
     /// For each light the primitive of the world that blocked it last: likely to block it again.
@@ -46,7 +46,7 @@ impl<'s> Intersector<'s> {
         Self {
             scene,
             scratch: Scratch::default(),
-            tree: PacketTree::default(),
+            packet: PacketMemory::default(),
             stats: TraversalStats::default(),
             occluders: vec![NONE; scene.lights.len()],
             remembers: true,

@@ -12,8 +12,8 @@ use strahl_simd::{Isa, Simd, dispatch};
 /// Groups of four rays in a packet.
 pub(crate) const GROUPS: usize = PACKET / LANES;
 
-/// The rays of a packet, coordinate by coordinate.
-#[derive(Clone, Copy, Debug)]
+/// The rays of a packet, coordinate by coordinate; by default zeros.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PacketRays {
     origin: [[[f64; LANES]; 3]; GROUPS],
     direction: [[[f64; LANES]; 3]; GROUPS],
@@ -22,19 +22,24 @@ pub struct PacketRays {
 impl PacketRays {
     /// At most [`PACKET`] rays; there are zeros in the lanes without one.
     pub fn new(rays: &[Ray]) -> Self {
-        let mut all = Self {
-            origin: [[[0.0; LANES]; 3]; GROUPS],
-            direction: [[[0.0; LANES]; 3]; GROUPS],
-        };
+        let mut all = Self::default();
+        all.set(rays);
+        all
+    }
+
+    /// The same in place.
+    pub fn set(&mut self, rays: &[Ray]) {
+        if rays.len() < PACKET {
+            *self = Self::default();
+        }
         for (number, ray) in rays.iter().enumerate().take(PACKET) {
             let (group, lane) = (number / LANES, number % LANES);
             let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
             for axis in 0..3 {
-                all.origin[group][axis][lane] = o[axis];
-                all.direction[group][axis][lane] = d[axis];
+                self.origin[group][axis][lane] = o[axis];
+                self.direction[group][axis][lane] = d[axis];
             }
         }
-        all
     }
 
     /// Those of the rays `lanes`, as bits, that may meet a box in the space to which a map leads, at parameters of at least `min` and at most

@@ -180,7 +180,7 @@ impl Intersector<'_> {
             slot: &self.slot,
             class: asked.class.bit(),
             parts: self.remembers,
-            tree: &mut self.tree,
+            memory: &mut self.packet,
         };
         shared.search(group, asked, Place::WORLD, t_max, queries);
     }
@@ -195,8 +195,18 @@ struct Shared<'v, 's> {
     class: u8,
     /// Whether to search only the part of a group that matters to the query.
     parts: bool,
+    memory: &'v mut PacketMemory,
+}
+
+/// What the searches of packets use again, because it is large.
+#[derive(Debug, Default)]
+pub(super) struct PacketMemory {
     /// What a packet meets of a CSG tree.
-    tree: &'v mut PacketTree,
+    tree: PacketTree,
+    /// The rays coordinate by coordinate.
+    coordinates: PacketRays,
+    /// Where they are inside of a shape.
+    spans: PacketSpans,
 }
 
 impl<'s> Shared<'_, 's> {
@@ -246,8 +256,7 @@ impl<'s> Shared<'_, 's> {
             from_prims: prims_of(group, asked, place),
             shears: &shears,
             culls,
-            coordinates: None,
-            spans: PacketSpans::default(),
+            has_coordinates: false,
             queries,
         };
         let mut packet = Packet {
@@ -319,10 +328,8 @@ struct Together<'v, 'w, 's, Q> {
     /// Empty where no primitive needs them.
     shears: &'v [RayShear],
     culls: PacketCulls<'v>,
-    /// The rays coordinate by coordinate, once a shape needs them.
-    coordinates: Option<PacketRays>,
-    /// Where they are inside of a shape.
-    spans: PacketSpans,
+    /// Whether the memory has these rays coordinate by coordinate: once a shape needs them.
+    has_coordinates: bool,
     unfiltered: bool,
     queries: &'v mut [Q; PACKET],
 }

@@ -56,6 +56,8 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
             ..*self.asked
         };
         let ends = self.shared.search(inner, &asked, place, ends, self.queries);
+        // The memory has the rays within the group now.
+        self.has_coordinates = false;
         for lane in lanes_of(lanes) {
             t_max[lane] = ends[lane];
         }

@@ -2,7 +2,7 @@
 
 use super::super::kinds::Query;
 use super::super::shapes::UnfilteredShape;
-use super::{Together, are_dense, fill_packet};
+use super::{PacketMemory, Together, are_dense, fill_packet};
 use crate::activity::Phase;
 use crate::hit::Hit;
 use crate::uses::EarlyBox;
@@ -105,8 +105,16 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     /// The rays coordinate by coordinate.
     #[inline]
     fn coordinates(&mut self) -> &PacketRays {
-        self.coordinates
-            .get_or_insert_with(|| PacketRays::new(self.asked.rays))
+        self.find_coordinates();
+        &self.shared.memory.coordinates
+    }
+
+    #[inline]
+    fn find_coordinates(&mut self) {
+        if !self.has_coordinates {
+            self.shared.memory.coordinates.set(self.asked.rays);
+            self.has_coordinates = true;
+        }
     }
 
     /// The surface of a shape that the ray of a lane starts on, if it starts on this primitive.
@@ -133,7 +141,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
             starting,
         };
         let map = shape.transform;
-        self.shared.tree.find(tree, &ranges, map, lanes);
+        self.shared.memory.tree.find(tree, &ranges, map, lanes);
         let mut found = self.shared.scratch.take_hits();
         for (place, lane) in lanes_of(lanes).enumerate() {
             let before = t_max[lane];
@@ -145,7 +153,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
             let ray = &self.asked.rays[lane];
             let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
             let scratch = &mut *self.shared.scratch;
-            let (known, query) = (&*self.shared.tree, &mut self.queries[lane]);
+            let (known, query) = (&self.shared.memory.tree, &mut self.queries[lane]);
             if Q::ALL {
                 found.clear();
                 if !known.all(tree, place, &inner, range, from, scratch, &mut found) {
@@ -175,11 +183,11 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
     /// Finds where those of several rays that don't start on a shape are inside of it, four side by side.
     fn find_spans(&mut self, id: u32, shape: &UnfilteredShape<'_>, lanes: u32) {
         let elsewhere = lanes & !self.lanes_from(id);
-        let rays = self
-            .coordinates
-            .get_or_insert_with(|| PacketRays::new(self.asked.rays));
-        self.spans
-            .find(shape.shape, rays, shape.transform, elsewhere);
+        self.find_coordinates();
+        let PacketMemory {
+            spans, coordinates, ..
+        } = &mut *self.shared.memory;
+        spans.find(shape.shape, coordinates, shape.transform, elsewhere);
     }
 
     /// Takes all hits of several rays on a shape, found four `side_by_side` or one by one.
@@ -204,7 +212,11 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
             found.clear();
             let known = side_by_side
                 && from.is_none()
-                && self.spans.all(shape.shape, lane, range, &mut found);
+                && self
+                    .shared
+                    .memory
+                    .spans
+                    .all(shape.shape, lane, range, &mut found);
             if !known {
                 let ray = &self.asked.rays[lane];
                 shape.meet_all(ray, range, from, self.shared.scratch, &mut found);
@@ -234,7 +246,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
             let ray = &self.asked.rays[lane];
             let from = self.start_on(id, shape, lane);
             let known = match from {
-                None => shape.meet_known::<Q>(&self.spans, lane, range),
+                None => shape.meet_known::<Q>(&self.shared.memory.spans, lane, range),
                 Some(_) => None,
             };
             let hit = match known {
