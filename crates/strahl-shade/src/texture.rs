@@ -457,13 +457,13 @@ impl PlainTexture {
     fn tilt(&self, point: &TexturePoint, n: DVec3, ways: Ways<'_>) -> Option<(DVec3, DVec3)> {
         let normal = self.normal.as_ref()?;
         let mapped = normal.uv_mapped.then(|| point.at_coordinates());
-        let (outer, in_map) = match mapped {
+        let (outer, in_map) = match &mapped {
             Some(mapped) if !point.is_member => {
-                let tilted = normal.tilt(&mapped, point.n_shade);
+                let tilted = normal.tilt(mapped, point.n_shade);
                 (tilted, tilted)
             }
             mapped => {
-                let tilted = normal.tilt(&mapped.unwrap_or(*point), n);
+                let tilted = normal.tilt(mapped.as_ref().unwrap_or(point), n);
                 (ways.out.leave(tilted), ways.to_map.leave(tilted))
             }
         };
