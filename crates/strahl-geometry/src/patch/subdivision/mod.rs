@@ -185,8 +185,12 @@ impl Elements for Subdivision {
     fn any(&self, id: u32, line: &Line<'_>, range: Interval, _from: Option<SurfaceId>) -> bool {
         let mut found = false;
         let mut ask = |leaf: &Leaf, _: Place, range: Interval| {
-            found = found || leaf.any(line, range);
-            range
+            found = leaf.any(line, range);
+            match found {
+                // Nothing is left to look for.
+                true => range.with_max(f64::NEG_INFINITY),
+                false => range,
+            }
         };
         if let Some(node) = self.node(id) {
             node.walk(line, range, Place::WHOLE, &mut ask);
