@@ -1,6 +1,6 @@
 //! The pictures of the manual that show patches: facets in POV-Ray, the surface itself in strahl.
 
-use crate::bench_objects::{FINEST, teapot};
+use crate::bench_objects::{FINE, teapot};
 use crate::bench_scenes::measure::{Program, Timed, render};
 use anyhow::{Result, bail};
 use std::path::Path;
@@ -10,7 +10,7 @@ const VIEWS: [(&str, &str, &str, &str); 2] = [
     // The spout.
     ("default", "", "<2.2, 1.85, 0>", "12"),
     // The tip of its lip, which turns within a few thousandths.
-    ("finest", FINEST, "<3.144, 2.467, 1.4>", "0.1"),
+    ("fine", FINE, "<3.144, 2.467, 1.4>", "0.1"),
 ];
 const SIZE: (u32, u32) = (160, 120);
 /// Seconds for a picture.

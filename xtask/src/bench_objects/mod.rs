@@ -10,7 +10,7 @@ use crate::bench::{Measured, geometric_mean, median};
 use crate::bench_scenes::measure::{Program, Timed, render};
 use anyhow::{Result, bail};
 use scenes::Scene;
-pub(crate) use scenes::{FINEST, teapot};
+pub(crate) use scenes::{FINE, teapot};
 use std::path::Path;
 
 /// Largest mean difference of the two pictures in 8-bit codes: POV-Ray has facets where strahl has patches, and holes where it has terrain.

@@ -50,28 +50,54 @@ pub(super) fn all() -> Result<Vec<Scene>> {
     Ok(all)
 }
 
-/// The teapot of the showcase, divided as finely as POV-Ray can: as it is; with one light and no mirrors; and from so near that a
-/// few patches fill the picture.
-fn teapots() -> Result<[Scene; 3]> {
-    let finest = teapot(FINEST)?;
-    let plain: String = finest
+/// How finely POV-Ray divides the teapot's patches: until hardly a pixel of 640x480 differs from the smooth surface. Each step takes four
+/// times the memory of the one before; the last takes half a gigabyte.
+const STEPS: [(&str, &str); 4] = [
+    ("bicubic_patch, one light, u_steps 5", FINE),
+    (
+        "bicubic_patch, one light, u_steps 6",
+        "u_steps 6 v_steps 6 flatness 0",
+    ),
+    (
+        "bicubic_patch, one light, u_steps 7",
+        "u_steps 7 v_steps 7 flatness 0",
+    ),
+    ("bicubic_patch, one light, u_steps 8", FINEST),
+];
+
+/// The teapot of the showcase: as it is; from so near that a few patches fill the picture; and with one light and no mirrors, divided ever
+/// more finely.
+fn teapots() -> Result<Vec<Scene>> {
+    let mut all = vec![
+        Scene::same("bicubic_patch, the showcase's teapot", teapot(FINEST)?),
+        Scene::same(
+            "bicubic_patch, a few close up",
+            plain_teapot(FINEST)?.replace("angle 40", "angle 9"),
+        ),
+    ];
+    for (name, steps) in STEPS {
+        all.push(Scene::same(name, plain_teapot(steps)?));
+    }
+    Ok(all)
+}
+
+/// The teapot with one light and without mirrors.
+fn plain_teapot(steps: &str) -> Result<String> {
+    Ok(teapot(steps)?
         .lines()
         .filter(|line| !line.trim_start().starts_with("area_light"))
         .map(|line| match line.split_once("reflection") {
             Some((before, _)) => format!("{before}}}\n"),
             None => format!("{line}\n"),
         })
-        .collect();
-    let near = plain.replace("angle 40", "angle 9");
-    Ok([
-        Scene::same("bicubic_patch, the showcase's teapot", finest),
-        Scene::same("bicubic_patch, one light, no mirrors", plain),
-        Scene::same("bicubic_patch, a few close up", near),
-    ])
+        .collect())
 }
 
-/// As finely as POV-Ray divides patches.
-pub(crate) const FINEST: &str = "u_steps 5 v_steps 5 flatness 0";
+/// A division of patches that shows facets at silhouettes.
+pub(crate) const FINE: &str = "u_steps 5 v_steps 5 flatness 0";
+
+/// As finely as POV-Ray can divide 32 patches in less than a gigabyte.
+const FINEST: &str = "u_steps 8 v_steps 8 flatness 0";
 
 /// The teapot of the showcase with other words for how finely it is divided.
 pub(crate) fn teapot(steps: &str) -> Result<String> {
@@ -110,7 +136,7 @@ fn quilt(side: u32) -> String {
         "#declare Side = {side};\n#declare P = array[16]\n\
          #macro Point(I, J) <I / Side * 10 - 5, 0.4 * sin(I * 0.21) * cos(J * 0.17), J / Side * 10 - 5> #end\n\
          #declare A = 0;\n#while (A < Side)\n#declare B = 0;\n#while (B < Side)\n\
-         bicubic_patch {{ type 1 {FINEST}\n\
+         bicubic_patch {{ type 1 {FINE}\n\
          #declare K = 0;\n#while (K < 16) Point(A + mod(K, 4) / 3, B + int(K / 4) / 3) #declare K = K + 1; #end }}\n\
          #declare B = B + 1;\n#end\n#declare A = A + 1;\n#end\n"
     )
