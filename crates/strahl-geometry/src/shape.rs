@@ -73,7 +73,8 @@ macro_rules! shapes {
             }
 
             fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
-                match self { $(Self::$variant(shape) => shape.store_bare_surface(ray, hit, out),)+ }
+                // Each in a function of its own: all in one would save and restore the registers that the largest needs.
+                match self { $(Self::$variant(shape) => store_bare(shape, ray, hit, out),)+ }
             }
 
             fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
@@ -91,6 +92,12 @@ macro_rules! shapes {
 
         $(conversions!($variant $($type)+);)+
     };
+}
+
+/// [`Primitive::store_bare_surface`] out of line.
+#[inline(never)]
+fn store_bare<P: Primitive>(shape: &P, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+    shape.store_bare_surface(ray, hit, out);
 }
 
 /// The conversions from a shape to its variant; those in an `Arc` are also put into it.

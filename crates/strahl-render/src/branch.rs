@@ -75,12 +75,15 @@ impl Branch {
             share,
             media,
         } = self;
-        *ray = *primary;
+        (*ray, *parent, *media) = (*primary, number, eye);
+        // From the primary ray that was here before it differs in nothing else.
+        if *kind == RayKind::Primary {
+            return;
+        }
         *origin = none.origin;
         (*kind, *class, *depth) = (none.kind, none.class, none.depth);
         (*part, *divided, *ordered) = (none.part, none.divided, none.ordered);
         (*weight, *share) = (none.weight, none.share);
-        (*parent, *media) = (number, eye);
     }
 }
 

@@ -12,6 +12,7 @@ use known::Known;
 use std::borrow::Cow;
 use strahl_math::{DVec3, Ray};
 use strahl_shade::patterns::TexturePoint;
+use strahl_shade::pov_finish::LightsShown;
 use strahl_shade::pov_finish::PovFinish;
 use strahl_shade::texture::{LayerPoint, Texture, TexturePaint};
 use strahl_shade::{Color, Finish, ShadingModel};
@@ -34,6 +35,7 @@ pub(crate) fn paint<'s>(
         if !scene.settings.quality.is_full() {
             surface.reduce(scene.settings.quality);
         }
+        surface.find_dull();
         return;
     };
     // An interpolated normal that faces away from the viewer is turned round, as in POV-Ray.
@@ -72,8 +74,7 @@ fn evaluate<'s>(
             direction: -surface.v,
         };
         let mut made = None;
-        let appearance = &surface.resolved.appearance;
-        let space = scene.texture_place(&mut place, hit, appearance, &mut made);
+        let space = scene.texture_place(&mut place, hit, &surface.resolved, &mut made);
         texture.layers_in(space, &place, eta, paint);
     }
     if !scene.settings.quality.is_full() {
@@ -87,7 +88,7 @@ fn evaluate<'s>(
         ..Finish::BLACK
     };
     let mut strongest = 0.0;
-    surface.shows_lights = false;
+    surface.shown = LightsShown::Nothing;
     if let Some(top) = paint.layers.first() {
         surface.n_shade = top.normal;
     }
@@ -96,7 +97,8 @@ fn evaluate<'s>(
         sum.ambient += body * layer.finish.ambient;
         sum.emission += body * layer.finish.emission;
         sum.diffuse += body * layer.finish.diffuse;
-        surface.shows_lights |= layer.finish.shows_lights(body);
+        surface.shown = surface.shown.max(layer.finish.lights_shown(body));
+        surface.has_grain |= layer.finish.crand != 0.0;
         let reflection = layer.reflectance * layer.share;
         sum.reflection += reflection;
         // The reflected direction reported for the surface is that of the layer which reflects most.
@@ -106,13 +108,14 @@ fn evaluate<'s>(
         }
     }
     surface.material.finish = Cow::Owned(sum);
+    surface.find_dull();
     surface.n_refract = paint
         .stacks
         .iter()
         .find(|stack| !stack.transmittance.is_black())
         .map_or(surface.n_shade, |stack| stack.normal);
     if let Some(known @ Known::Unknown) = known {
-        *known = Known::of(texture, paint, sum, surface.shows_lights);
+        *known = Known::of(texture, paint, surface, sum);
     }
 }
 
@@ -455,6 +458,7 @@ pub(crate) fn faces(paint: &TexturePaint<'_>, l: DVec3) -> bool {
 }
 
 /// Whether light from the direction `l` may show on any layer, by the finishes' own highlights; `false` is certain.
+#[inline]
 pub(crate) fn shows_light_from(paint: &TexturePaint<'_>, v: DVec3, l: DVec3) -> bool {
     paint.layers.iter().any(|layer| {
         layer
@@ -463,12 +467,14 @@ pub(crate) fn shows_light_from(paint: &TexturePaint<'_>, v: DVec3, l: DVec3) -> 
     })
 }
 
-/// The surface's own light, which is not below zero although `crand` may subtract more than there is.
-pub(crate) fn grained(paint: &TexturePaint<'_>, light: Color) -> Color {
-    if paint.layers.iter().all(|layer| layer.finish.crand == 0.0) {
-        return light;
+/// The light of a surface itself, which is not below zero although `crand` may subtract more than there is.
+#[inline]
+pub(crate) fn grained(surface: &Surface<'_>, light: Color) -> Color {
+    if surface.has_grain {
+        light.map(|x| if x > 0.0 { x } else { 0.0 })
+    } else {
+        light
     }
-    light.map(|x| if x > 0.0 { x } else { 0.0 })
 }
 
 /// The layers at a hit, for ray trees; `eta` is that of [`paint`].

@@ -19,6 +19,21 @@ pub(crate) struct Resolved {
     pub(crate) appearance: Appearance,
     /// Where the elements of the innermost instance begin; 0 in the world.
     pub(crate) space: u64,
+    /// The element of the world, unless it belongs to an instance.
+    element: Option<WorldElement>,
+    /// Whether the hit before was on the same element of the world, so that nothing differs but the point.
+    pub(crate) is_same_element: bool,
+}
+
+/// An element of the world, as [`RenderScene::resolve`] has looked it up: the next hit is mostly on the same one.
+#[derive(Clone, Copy, Debug)]
+struct WorldElement {
+    id: u64,
+    kind: PrimKind,
+    /// Its number within the primitive.
+    number: u32,
+    /// Whether texture coordinates are wanted.
+    uv: bool,
 }
 
 impl Resolved {
@@ -35,7 +50,15 @@ impl Resolved {
             uv: UvMapping::Off,
         },
         space: 0,
+        element: None,
+        is_same_element: false,
     };
+
+    /// Whether the element belongs to no instance.
+    #[inline]
+    fn is_in_world(&self) -> bool {
+        self.element.is_some()
+    }
 }
 
 /// The properties of a surface point that determine the start of a ray.
@@ -65,7 +88,8 @@ impl RenderScene {
         resolved.point
     }
 
-    /// The surface at a hit: `ray` is the world ray that found it, `origin` where it started.
+    /// The surface at a hit: `ray` is the world ray that found it, `origin` where it started. `out` is unknown, or has the surface of
+    /// another hit in this scene for which the same texture coordinates were wanted.
     // In place: values of this size are copied by calls of memcpy.
     #[inline]
     pub(crate) fn resolve(
@@ -76,20 +100,44 @@ impl RenderScene {
         uv: Uv,
         out: &mut Resolved,
     ) {
+        out.is_same_element = out.element.is_some_and(|element| element.id == hit.id);
+        if !out.is_same_element {
+            self.look_up(hit, uv, out);
+        }
+        match &out.element {
+            Some(element) => {
+                let world = &self.groups[0];
+                let WorldElement {
+                    kind, number, uv, ..
+                } = *element;
+                world.store_surface(kind, ray, hit, number, uv, &mut out.point);
+                if uv {
+                    out.point.uv = world.texture_uv(kind, hit, number, &out.point);
+                }
+            }
+            None => self.resolve_within(ray, origin, hit, uv, out),
+        }
+    }
+
+    /// Looks up the element of a hit, and how it is seen; no element if it belongs to an instance.
+    #[inline(never)]
+    fn look_up(&self, hit: &Hit, uv: Uv, out: &mut Resolved) {
         let world = &self.groups[0];
         let prim = world.prim_of(hit.id);
-        if matches!(world.prims.at(prim).kind(), PrimKind::Instance(_)) {
-            self.resolve_within(ray, origin, hit, uv, out);
+        let kind = world.prims.at(prim).kind();
+        if matches!(kind, PrimKind::Instance(_)) {
+            out.element = None;
             return;
         }
-        let element = (hit.id - world.first_id(prim)) as u32;
-        out.appearance = world.appearance(prim, element);
+        let number = (hit.id - world.first_id(prim)) as u32;
+        out.appearance = world.appearance_of(kind, number);
         (out.local, out.space) = (None, 0);
-        let uv = self.wants_uv(&out.appearance, uv);
-        world.store_surface(prim, ray, hit, element, uv, &mut out.point);
-        if uv {
-            out.point.uv = world.texture_uv(prim, hit, element, &out.point);
-        }
+        out.element = Some(WorldElement {
+            id: hit.id,
+            kind,
+            number,
+            uv: self.wants_uv(&out.appearance, uv),
+        });
     }
 
     /// Whether texture coordinates are wanted for a material.
@@ -111,7 +159,8 @@ impl RenderScene {
     ) {
         let mut made = None;
         let (at, to_world) = self.locate_with_map(hit.id, &mut made);
-        out.appearance = at.group.appearance(at.prim, at.element);
+        let kind = at.group.prims.at(at.prim).kind();
+        out.appearance = at.group.appearance_of(kind, at.element);
         let uv = self.wants_uv(&out.appearance, uv);
         let local_ray = match to_world {
             None => *ray,
@@ -128,7 +177,7 @@ impl RenderScene {
         };
         let point = &mut out.point;
         at.group
-            .store_surface(at.prim, &local_ray, hit, at.element, uv, point);
+            .store_surface(kind, &local_ray, hit, at.element, uv, point);
         out.local = to_world.map(|m| {
             let local = LocalPoint {
                 position: point.position,
@@ -139,7 +188,7 @@ impl RenderScene {
             local
         });
         if uv {
-            point.uv = at.group.texture_uv(at.prim, hit, at.element, point);
+            point.uv = at.group.texture_uv(kind, hit, at.element, point);
         }
         out.space = at.space;
     }
@@ -152,10 +201,11 @@ impl RenderScene {
         &'m self,
         place: &mut TexturePoint,
         hit: &Hit,
-        appearance: &Appearance,
+        resolved: &Resolved,
         made: &'m mut Option<Transform>,
     ) -> Option<&'m Transform> {
-        let space = self.texture_space(hit, appearance, made);
+        let space = self.texture_space(hit, resolved, made);
+        let appearance = &resolved.appearance;
         if appearance.uv == UvMapping::Off {
             return space;
         }
@@ -171,11 +221,12 @@ impl RenderScene {
     fn texture_space<'m>(
         &'m self,
         hit: &Hit,
-        appearance: &Appearance,
+        resolved: &Resolved,
         made: &'m mut Option<Transform>,
     ) -> Option<&'m Transform> {
-        let to_group = self.texture_spaces.get(appearance.texture_space as usize);
-        if self.is_in_world(hit.id) {
+        let number = resolved.appearance.texture_space as usize;
+        let to_group = self.texture_spaces.get(number);
+        if resolved.is_in_world() {
             return to_group;
         }
         let Some(inner) = to_group else {
@@ -184,14 +235,6 @@ impl RenderScene {
         let mut nested = None;
         let outer = self.locate_with_map(hit.id, &mut nested).1?;
         Some(made.insert(inner.then(outer)))
-    }
-
-    /// Whether an element belongs to no instance; the number must come from a hit in this scene.
-    #[inline]
-    fn is_in_world(&self, id: u64) -> bool {
-        let world = &self.groups[0];
-        let prim = world.prims.at(world.prim_of(id));
-        !matches!(prim.kind(), PrimKind::Instance(_))
     }
 
     /// The attenuation of light along a direction by the texture at a hit; `caustics` is that of the interior.
@@ -226,7 +269,7 @@ impl RenderScene {
             direction,
         };
         let mut made = None;
-        let space = self.texture_place(&mut place, hit, &resolved.appearance, &mut made);
+        let space = self.texture_place(&mut place, hit, resolved, &mut made);
         if caustics > 0.0 {
             return texture.gathered_attenuation(space, &place, caustics);
         }
@@ -258,11 +301,11 @@ impl RenderScene {
 }
 
 impl RenderGroup {
-    /// Stores the surface at a hit, in this group's space, with texture coordinates if `uv`.
+    /// Stores the surface at a hit on an element of a primitive of this kind, in this group's space, with texture coordinates if `uv`.
     #[inline]
     pub(crate) fn store_surface(
         &self,
-        prim: u32,
+        kind: PrimKind,
         ray: &Ray,
         hit: &Hit,
         element: u32,
@@ -277,7 +320,7 @@ impl RenderGroup {
                 shape.store_bare_surface(ray, &hit, out);
             }
         };
-        match self.prims.at(prim).kind() {
+        match kind {
             PrimKind::Triangle(mesh, triangle) => {
                 let mesh = &self.meshes[mesh as usize].mesh;
                 *out = mesh.surface_at_element(triangle, hit.uv);
@@ -307,9 +350,9 @@ impl RenderGroup {
 
     /// The texture coordinates at a hit: the surface's own, or x and y of the world where it has none, as in POV-Ray.
     #[cold]
-    fn texture_uv(&self, prim: u32, hit: &Hit, element: u32, point: &SurfacePoint) -> DVec2 {
+    fn texture_uv(&self, kind: PrimKind, hit: &Hit, element: u32, point: &SurfacePoint) -> DVec2 {
         let hit = prim_hit(hit, element);
-        let own = match self.prims.at(prim).kind() {
+        let own = match kind {
             PrimKind::Triangle(mesh, _) => {
                 self.meshes[mesh as usize].mesh.texture_uv(&hit, point.uv)
             }

@@ -322,7 +322,13 @@ impl RenderGroup {
     /// Object and material of an element of a primitive that is no instance.
     #[inline]
     pub(crate) fn appearance(&self, prim: u32, element: u32) -> Appearance {
-        match self.prims.at(prim).kind() {
+        self.appearance_of(self.prims.at(prim).kind(), element)
+    }
+
+    /// The same for a primitive of this kind.
+    #[inline]
+    pub(crate) fn appearance_of(&self, kind: PrimKind, element: u32) -> Appearance {
+        match kind {
             PrimKind::Triangle(mesh, _) => self.meshes[mesh as usize].appearance,
             PrimKind::Sphere(number) => self.spheres.appearance(number),
             PrimKind::Shape(index) | PrimKind::Placed(index) => {

@@ -10,6 +10,7 @@ use crate::resolve::{Resolved, Uv};
 use crate::scene::RenderScene;
 use std::borrow::Cow;
 use strahl_math::{DVec3, Ray, error};
+use strahl_shade::pov_finish::LightsShown;
 use strahl_shade::{
     Color, Finish, MaterialId, MaterialPoint, Quality, Refracted, ShadingModel, SpectralPart,
     fresnel_dielectric, reflect, refract,
@@ -83,9 +84,12 @@ pub(crate) struct Surface<'s> {
     pub(crate) thin: bool,
     /// Which lights shine on it.
     pub(crate) lit: Lit,
-    /// Whether light sources can show on it. If not, its diffuse reflection and its highlights are black, so that it needs no shadow
-    /// rays: most sky spheres are such.
-    pub(crate) shows_lights: bool,
+    /// Which light sources can show on it. Where none can, it needs no shadow rays: most sky spheres are such.
+    pub(crate) shown: LightsShown,
+    /// Whether a layer of its texture has `crand`.
+    pub(crate) has_grain: bool,
+    /// Whether no light goes on from here: [`Surface::split`] is [`Split::NONE`]. Painting finds it out.
+    pub(crate) is_dull: bool,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
     /// Both indices for white light.
@@ -94,6 +98,8 @@ pub(crate) struct Surface<'s> {
     inside: bool,
     /// What is inside of the object.
     own: Medium,
+    /// Of a ray of white light in no medium, whether it is inside: the indices are those of such a ray and this element.
+    side_in_air: Option<bool>,
     /// What the ray comes from and what is behind the surface; `None` is air.
     medium_1: Option<MaterialId>,
     medium_2: Option<MaterialId>,
@@ -121,7 +127,9 @@ impl<'s> Surface<'s> {
             entering: true,
             thin: false,
             lit: Lit::DEFAULT,
-            shows_lights: true,
+            shown: LightsShown::All,
+            has_grain: false,
+            is_dull: false,
             eta_1: 1.0,
             eta_2: 1.0,
             white_etas: (1.0, 1.0),
@@ -131,6 +139,7 @@ impl<'s> Surface<'s> {
                 material: MaterialId(0),
                 hollow: false,
             },
+            side_in_air: None,
             medium_1: None,
             medium_2: None,
             front: (DVec3::ZERO, Origin::NOWHERE),
@@ -173,14 +182,35 @@ impl<'s> Surface<'s> {
         let n_shade = n_shade * side;
         (self.n_geom, self.n_shade, self.n_refract) = (point.n_geom * side, n_shade, n_shade);
         self.n_smooth = None;
-        self.own = appearance.medium(material, *space);
-        self.thin = material.thin;
+        let is_same_element = self.resolved.is_same_element;
+        if !is_same_element {
+            self.own = appearance.medium(material, *space);
+            self.thin = material.thin;
+            self.lit = scene.lit(hit.id, appearance.object);
+        }
         // A thin sheet has the same medium on both sides and is met from outside.
         self.inside = !self.thin
             && match Crossing::of(material) {
                 Crossing::BySide => !self.entering,
                 Crossing::ByTurns => media.is_inside(branch.media, self.own.body),
             };
+        // Most rays travel through air and meet what the ray before in this place met.
+        let in_air = branch.media == MediaStack::VACUUM && branch.part.is_white();
+        let side_in_air = in_air.then_some(self.inside);
+        if !is_same_element || !in_air || self.side_in_air != side_in_air {
+            self.find_indices(scene, branch, media);
+            self.side_in_air = side_in_air;
+        }
+        let appearance = &self.resolved.appearance;
+        if self.painted != Some((appearance.material, self.entering)) {
+            self.painted = None;
+            material.store_at(self.resolved.point.uv, &mut self.material);
+        }
+        (self.shown, self.has_grain) = (LightsShown::All, false);
+    }
+
+    /// Finds the media on both sides and their indices of refraction.
+    fn find_indices(&mut self, scene: &RenderScene, branch: &Branch, media: &MediaArena) {
         let around = media.top(branch.media);
         (self.medium_1, self.medium_2) = if self.inside {
             // Without a known medium the ray must be inside of the material whose back it sees.
@@ -200,18 +230,18 @@ impl<'s> Surface<'s> {
                 (index(self.medium_1), index(self.medium_2))
             }
         };
-        if self.painted != Some((appearance.material, self.entering)) {
-            self.painted = None;
-            material.store_at(point.uv, &mut self.material);
-        }
-        self.lit = scene.lit(hit.id, appearance.object);
-        self.shows_lights = true;
     }
 
     /// Finds where rays towards the side of the viewer start.
     #[inline(always)]
     pub(crate) fn find_start(&mut self, hit: &Hit) {
         store_start(&self.resolved, hit, self.entering, &mut self.front);
+    }
+
+    /// The same, if the place outside of all instances is known.
+    #[inline(always)]
+    pub(crate) fn put_start(&mut self, hit: &Hit, place: DVec3) {
+        put_start(&self.resolved, hit, self.entering, place, &mut self.front);
     }
 
     /// Whether light passes without refraction, at any angle.
@@ -301,7 +331,7 @@ impl<'s> Surface<'s> {
                 emission: if sum.is_black() { finish.emission } else { sum },
                 ..Finish::BLACK
             };
-            self.shows_lights = false;
+            self.shown = LightsShown::Nothing;
         }
         if !quality.has_reflection() {
             // Without Fresnel's equations, light that is reflected totally is light that would have passed.
@@ -313,18 +343,19 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// Whether no light goes on from here: [`Surface::split`] is [`Split::NONE`].
+    /// Finds out whether light goes on from here, once the coefficients of the material are known.
     #[inline]
-    pub(crate) fn is_dull(&self) -> bool {
+    pub(crate) fn find_dull(&mut self) {
         let finish = &self.material.finish;
         let dielectric = self.material.fresnel && !self.material.fresnel_reflection.is_black();
-        finish.transmission.is_black() && !dielectric && finish.reflection.is_black()
+        self.is_dull =
+            finish.transmission.is_black() && !dielectric && finish.reflection.is_black();
     }
 
     /// Divides the light into reflection and transparency, by Snell's law and, if the material asks for it, Fresnel's
     /// equations. On total reflection kt is added to kr.
     pub(crate) fn split(&self, ray: &Ray) -> Split {
-        if self.is_dull() {
+        if self.is_dull {
             return Split::NONE;
         }
         let finish = &self.material.finish;
@@ -533,14 +564,24 @@ fn start(r: &Resolved, hit: &Hit, along_normal: bool) -> (DVec3, Origin) {
 /// [`start`] in place: a copy of the result would wait until all of its parts are stored.
 #[inline(always)]
 fn store_start(r: &Resolved, hit: &Hit, along_normal: bool, out: &mut (DVec3, Origin)) {
-    // Both normals point to the same side of the surface in their spaces.
-    let toward = |n: DVec3| if along_normal { n } else { -n };
-    let (point, origin) = out;
     let p = &r.point;
-    let place = error::offset_origin(p.position, p.position_error, toward(p.n_geom));
+    let place = error::offset_origin(p.position, p.position_error, toward(p.n_geom, along_normal));
+    put_start(r, hit, along_normal, place, out);
+}
+
+/// A normal, or its opposite.
+#[inline(always)]
+fn toward(n: DVec3, along_normal: bool) -> DVec3 {
+    if along_normal { n } else { -n }
+}
+
+#[inline(always)]
+fn put_start(r: &Resolved, hit: &Hit, along_normal: bool, place: DVec3, out: &mut (DVec3, Origin)) {
+    let (point, origin) = out;
+    // Both normals point to the same side of the surface in their spaces.
     let local = match &r.local {
         None => place,
-        Some(l) => error::offset_origin(l.position, l.error, toward(l.normal)),
+        Some(l) => error::offset_origin(l.position, l.error, toward(l.normal, along_normal)),
     };
     *point = place;
     (origin.id, origin.facet, origin.local) = (hit.id, hit.facet, local);

@@ -31,6 +31,7 @@ mod settings;
 mod slots;
 mod spawn;
 mod stages;
+mod starts;
 
 use eye::Eye;
 pub(crate) use eye::Filled;

@@ -233,6 +233,17 @@ fn metallic_tint(metallic: f64, cos: f64, pigment: Color) -> Color {
     Color::WHITE + (pigment - Color::WHITE) * (metallic * (1.0 - f))
 }
 
+/// Which light sources may show on a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LightsShown {
+    /// None: the surface neither scatters light nor has highlights.
+    Nothing,
+    /// Those near the direction of a highlight.
+    Highlights,
+    /// All that shine on it.
+    All,
+}
+
 impl PovFinish {
     /// The factor that turns `diffuse albedo x` into `diffuse`: `(brilliance + 1) / 2`.
     pub fn diffuse_from_albedo(brilliance: f64) -> f64 {
@@ -323,10 +334,16 @@ impl PovFinish {
         parts
     }
 
-    /// Whether light of a light source may show on a layer whose colour times opacity is `body`; `false` is certain.
+    /// Which light of light sources may show on a layer whose colour times opacity is `body`.
     #[inline]
-    pub fn shows_lights(&self, body: Color) -> bool {
-        self.scatters(body) || self.phong != 0.0 || self.specular != 0.0
+    pub fn lights_shown(&self, body: Color) -> LightsShown {
+        if self.scatters(body) {
+            LightsShown::All
+        } else if self.phong != 0.0 || self.specular != 0.0 {
+            LightsShown::Highlights
+        } else {
+            LightsShown::Nothing
+        }
     }
 
     /// Whether such a layer may scatter light.

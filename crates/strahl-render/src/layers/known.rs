@@ -3,6 +3,8 @@
 use crate::scene::RenderScene;
 use crate::surface::{Side, Surface};
 use std::borrow::Cow;
+use strahl_math::DVec3;
+use strahl_shade::pov_finish::LightsShown;
 use strahl_shade::texture::{LayerPoint, StackPoint, Texture, TexturePaint};
 use strahl_shade::{Color, Finish};
 
@@ -33,16 +35,17 @@ pub(super) struct KnownPaint<'s> {
     transmission: Color,
     /// The coefficients of the surface.
     sum: Finish,
-    shows_lights: bool,
+    shown: LightsShown,
+    has_grain: bool,
 }
 
 impl<'s> Known<'s> {
-    /// What a texture with these layers and this sum of coefficients at a point tells of all points.
+    /// What a texture with these layers at a surface, and this sum of coefficients, tells of all surfaces.
     pub(super) fn of(
         texture: &Texture,
         paint: &TexturePaint<'s>,
+        surface: &Surface<'_>,
         sum: Finish,
-        shows_lights: bool,
     ) -> Self {
         match (&paint.layers[..], &paint.stacks[..]) {
             ([layer], [stack]) if texture.is_same_everywhere() => {
@@ -51,7 +54,8 @@ impl<'s> Known<'s> {
                     stack: *stack,
                     transmission: paint.transmission,
                     sum,
-                    shows_lights,
+                    shown: surface.shown,
+                    has_grain: surface.has_grain,
                 }))
             }
             _ => Self::Varies,
@@ -105,18 +109,24 @@ impl<'s> KnownPaints<'s> {
 
 impl<'s> KnownPaint<'s> {
     /// Evaluates the texture at a surface of this side of its material: what [`paint`](super::paint) does, with the same bits.
-    #[inline]
+    #[inline(always)]
     pub(super) fn put(&self, side: Side, surface: &mut Surface<'_>, paint: &mut TexturePaint<'s>) {
         let normal = surface.n_shade;
         surface.n_refract = normal;
-        surface.shows_lights = self.shows_lights;
+        (surface.shown, surface.has_grain) = (self.shown, self.has_grain);
         if surface.painted == Some(side)
             && let (Some(layer), Some(stack)) = (paint.layers.first_mut(), paint.stacks.first_mut())
         {
             (layer.normal, stack.normal) = (normal, normal);
-            return;
+        } else {
+            surface.painted = Some(side);
+            self.put_all(normal, surface, paint);
         }
-        surface.painted = Some(side);
+    }
+
+    /// Stores everything that the layer has.
+    #[inline(never)]
+    fn put_all(&self, normal: DVec3, surface: &mut Surface<'_>, paint: &mut TexturePaint<'s>) {
         paint.layers.clear();
         paint.layers.push(LayerPoint {
             normal,
@@ -131,5 +141,6 @@ impl<'s> KnownPaint<'s> {
         surface.material.fresnel = false;
         surface.material.fresnel_reflection = Color::BLACK;
         surface.material.finish = Cow::Owned(self.sum);
+        surface.find_dull();
     }
 }

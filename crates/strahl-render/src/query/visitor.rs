@@ -335,8 +335,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let material = &self.search.scene.materials[appearance.material.0 as usize];
         let masked = material.is_masked();
         let mut point = Resolved::UNKNOWN.point;
+        let kind = self.group.prims.at(id).kind();
         self.group
-            .store_surface(id, self.ray, hit, surface.element, masked, &mut point);
+            .store_surface(kind, self.ray, hit, surface.element, masked, &mut point);
         let front = point.n_geom.dot(self.ray.direction) < 0.0;
         if material.sides == Sides::Front && !front {
             return false;

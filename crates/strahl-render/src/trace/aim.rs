@@ -8,7 +8,7 @@ use strahl_shade::{Light, LightSample};
 use strahl_simd::{Simd, dispatch};
 
 /// Vectors, axis by axis.
-type Vectors = [[f64; PACKET]; 3];
+pub(super) type Vectors = [[f64; PACKET]; 3];
 
 /// Points on surfaces and their shading normals.
 #[derive(Debug)]
@@ -129,8 +129,9 @@ impl Directions {
     }
 }
 
+/// Stores a vector at an index.
 #[inline(always)]
-fn put(vectors: &mut Vectors, index: usize, v: DVec3) {
+pub(super) fn put(vectors: &mut Vectors, index: usize, v: DVec3) {
     for (axis, x) in v.to_array().into_iter().enumerate() {
         vectors[axis][index % PACKET] = x;
     }

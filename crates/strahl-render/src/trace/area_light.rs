@@ -186,7 +186,7 @@ impl<'s> TreeTracer<'s> {
         let mut shadows = [Shadow::NONE; PACKET];
         let together = self.settings.packets && self.intersector.scene.mask(light).is_none();
         if together && aims.len() >= PACKET_MIN {
-            self.shadows_of(&aims, light, &mut shadows);
+            self.shadows_of(aims.len(), |index| aims[index], light, &mut shadows);
         } else {
             for (aim, shadow) in aims.iter().zip(&mut shadows) {
                 *shadow = self.shadow_of(aim, light);

@@ -1,4 +1,4 @@
-//! The number of rays that go through the stages together changes no bit.
+//! Neither the number of rays that go through the stages together nor the rays before change a bit.
 
 use super::{TraceSettings, TreeTracer};
 use crate::compile::{CompileOptions, compile};
@@ -174,6 +174,13 @@ fn traced_in_batches<'s>(
             None => Sample::BLACK,
         })
         .collect();
+    // What a tracer keeps of the ray before changes nothing.
+    for (ray, seen) in rays.iter().zip(&alone) {
+        if let Some(ray) = ray {
+            let first = tracer(one_by_one).trace(ray, &mut ()).sample();
+            assert_eq!(first, *seen);
+        }
+    }
     for size in [1, 2, 3, 7, PACKET] {
         // Fewer primary rays whose branches wait for each other, and fewer of all rays.
         for (primary, batch) in [(size, PACKET), (PACKET, size)] {

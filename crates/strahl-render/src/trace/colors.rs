@@ -82,7 +82,7 @@ fn place<'s>(
         ..TexturePoint::in_space(surface.resolved.point.position)
     };
     let mut made = None;
-    if let Some(space) = scene.texture_place(&mut point, hit, appearance, &mut made) {
+    if let Some(space) = scene.texture_place(&mut point, hit, &surface.resolved, &mut made) {
         point.position = space.point_to_object(point.position);
     }
     Some(Place {

@@ -10,8 +10,9 @@ use crate::observer::{LightTerm, ShadowReport, TraceObserver};
 use crate::query::PACKET_MIN;
 use crate::shadow::{Shadow, ShadowRay};
 use arrayvec::ArrayVec;
-use strahl_accel::PACKET;
+use strahl_accel::{PACKET, lanes_of};
 use strahl_math::{DVec3, Interval, Ray};
+use strahl_shade::pov_finish::LightsShown;
 use strahl_shade::{Color, Light, LightSample};
 
 /// A light at a point that may face it.
@@ -31,6 +32,7 @@ pub(crate) struct Arriving {
 }
 
 /// A shadow ray to be traced.
+#[derive(Clone, Copy)]
 pub(crate) struct Aim<'p> {
     pub(crate) point: &'p Point<'p>,
     pub(crate) direction: DVec3,
@@ -150,7 +152,7 @@ impl<'s> TreeTracer<'s> {
         // Points of an area light with `area_illumination` may be above the horizon where its centre is not.
         let may_face = self.faces(point, sample.l, n_dot_l)
             || light.area.is_some_and(|area| area.illumination);
-        if may_face && point.surface.shows_lights && self.may_show(point, light, &sample) {
+        if may_face && self.may_show(point, light, &sample) {
             arriving.push(Arriving {
                 lane,
                 sample,
@@ -198,43 +200,49 @@ impl<'s> TreeTracer<'s> {
                 range: one.sample.range,
             };
             let shadow = self.shadow_of(&aim, number);
-            self.count_shadow(one, shadow);
+            self.count_shadow(one, &shadow);
         }
     }
 
     /// Traces shadow rays in packets.
     fn shadows_together(&mut self, points: &[Point<'s>], number: usize, arriving: &mut [Arriving]) {
-        let mut aims = ArrayVec::<Aim<'_>, PACKET>::new();
-        for one in arriving.iter().take(PACKET) {
-            aims.push(Aim {
+        let mut shadows = [Shadow::NONE; PACKET];
+        let aim = |index: usize| {
+            let one = &arriving[index];
+            Aim {
                 point: &points[one.lane],
                 direction: one.sample.shadow_direction,
                 range: one.sample.range,
-            });
-        }
-        let mut shadows = [Shadow::NONE; PACKET];
-        self.shadows_of(&aims, number, &mut shadows);
+            }
+        };
+        self.shadows_of(arriving.len(), aim, number, &mut shadows);
         for (one, shadow) in arriving.iter_mut().zip(&shadows) {
             if !one.sample.range.is_empty() {
-                self.count_shadow(one, *shadow);
+                self.count_shadow(one, shadow);
             }
         }
     }
 
-    /// What arrives of a light along shadow rays, at most [`PACKET`], which are traced together. Those that start on the far side of their
-    /// surface, or have another range, go by themselves; where a range is empty nothing is looked for.
+    /// What arrives of a light along `count` shadow rays, at most [`PACKET`], which are traced together; `aim` makes them. Those that start on the
+    /// far side of their surface, or have another range, go by themselves; where a range is empty nothing is looked for.
     #[inline(always)]
-    pub(crate) fn shadows_of(
+    pub(crate) fn shadows_of<'p>(
         &mut self,
-        aims: &[Aim<'_>],
+        count: usize,
+        aim: impl Fn(usize) -> Aim<'p>,
         light: usize,
         shadows: &mut [Shadow; PACKET],
     ) {
+        let count = count.min(PACKET);
+        if count == 0 {
+            return;
+        }
         let mut rays = ArrayVec::<Ray, PACKET>::new();
         let (mut from, mut t_max) = ([None; PACKET], [f64::NEG_INFINITY; PACKET]);
         let (mut places, mut alone) = ([0; PACKET], 0u32);
-        let min = aims.first().map_or(0.0, |aim| aim.range.min);
-        for (index, aim) in aims.iter().enumerate().take(PACKET) {
+        let min = aim(0).range.min;
+        for index in 0..count {
+            let aim = aim(index);
             if aim.range.is_empty() {
                 continue;
             }
@@ -268,7 +276,8 @@ impl<'s> TreeTracer<'s> {
                 Shadow::STOPPED
             } else if transmits {
                 let from = from[lane].unwrap_or(&Origin::NOWHERE);
-                let shadow_ray = aims[*index].shadow_ray(light, &rays[lane], from);
+                let aim = aim(*index);
+                let shadow_ray = aim.shadow_ray(light, &rays[lane], from);
                 let hits = &mut lists[lane];
                 self.intersector
                     .filtered(&shadow_ray, &mut self.media, hits)
@@ -277,10 +286,8 @@ impl<'s> TreeTracer<'s> {
             };
         }
         self.packet_hits = lists;
-        for (index, aim) in aims.iter().enumerate().take(PACKET) {
-            if alone >> index & 1 == 1 {
-                shadows[index] = self.shadow_of(aim, light);
-            }
+        for index in lanes_of(alone) {
+            shadows[index % PACKET] = self.shadow_of(&aim(index), light);
         }
     }
 
@@ -418,7 +425,7 @@ impl<'s> TreeTracer<'s> {
 
     /// Takes what a shadow ray brought.
     #[inline]
-    fn count_shadow(&mut self, arriving: &mut Arriving, shadow: Shadow) {
+    fn count_shadow(&mut self, arriving: &mut Arriving, shadow: &Shadow) {
         self.counts.shadow += 1;
         self.counts.shadow_hit += u64::from(shadow.hit);
         arriving.shadow_rays = 1;
@@ -437,14 +444,19 @@ impl<'s> TreeTracer<'s> {
         }
     }
 
-    /// Whether a light may show on a surface that shows some lights; `false` is certain.
-    #[inline]
+    /// Whether a light may show on a surface; `false` is certain.
+    #[inline(always)]
     fn may_show(&self, point: &Point<'_>, light: &Light, sample: &LightSample) -> bool {
-        let several_directions = light.area.is_some_and(|area| area.illumination);
-        several_directions
-            || point.paint.layers.is_empty()
-            || self.settings.force_shading.is_some()
-            || layers::shows_light_from(&point.paint, point.surface.v, sample.l)
+        match point.surface.shown {
+            LightsShown::Nothing => false,
+            LightsShown::All => true,
+            LightsShown::Highlights => {
+                let several_directions = light.area.is_some_and(|area| area.illumination);
+                several_directions
+                    || self.settings.force_shading.is_some()
+                    || layers::shows_light_from(&point.paint, point.surface.v, sample.l)
+            }
+        }
     }
 
     /// The light that a surface reflects if light arrives from the unit direction `l`: the diffuse part and the highlight.

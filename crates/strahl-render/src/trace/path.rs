@@ -33,6 +33,7 @@ impl<'s> TreeTracer<'s> {
             .take()
             .unwrap_or_else(|| Box::new(Point::unknown(&self.blank)));
         let (scene, speed) = (self.intersector.scene, ray.direction.length());
+        let per_speed = speed.recip();
         point.branch = Branch {
             origin: *origin,
             ..Branch::primary(ray, 0, *media)
@@ -45,7 +46,7 @@ impl<'s> TreeTracer<'s> {
             ..
         } = &mut *point;
         surface.find(scene, branch, &hit, Uv::IfTextured);
-        surface.find_sides(scene, branch, speed, &hit, &self.media);
+        surface.find_sides(scene, branch, per_speed, &hit, &self.media);
         surface.find_start(&hit);
         layers::paint(scene, surface, &hit, paint, &mut self.paints);
         let sample = self.sample_of(&point);

@@ -20,8 +20,8 @@ impl<'s> TreeTracer<'s> {
     ) {
         for lane in lanes {
             let point = &points[*lane];
-            self.nodes[point.node as usize].local = layers::grained(&point.paint, point.local);
-            if O::DETAILED || !point.surface.is_dull() {
+            self.nodes[point.node as usize].local = layers::grained(&point.surface, point.local);
+            if O::DETAILED || !point.surface.is_dull {
                 let split = self.split(point);
                 self.queue_branches(point, &split, observer);
             }

@@ -16,6 +16,7 @@
 use super::aim::Speeds;
 use super::colors::find_colors;
 use super::point::{Lanes, Point};
+use super::starts::find_starts;
 use super::{Branch, FirstHit, Node, TreeTracer};
 use crate::activity::Phase;
 use crate::hit::{Hit, RayClass};
@@ -221,10 +222,7 @@ impl<'s> TreeTracer<'s> {
                 observer.ray(self.ray_report(point, None, Some(seen)));
             }
         }
-        for lane in &lanes {
-            let Point { surface, hit, .. } = &mut points[*lane];
-            surface.find_start(hit);
-        }
+        find_starts(points, &lanes);
         lanes
     }
 

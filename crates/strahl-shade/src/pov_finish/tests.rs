@@ -286,20 +286,35 @@ fn a_shading_model_takes_the_place_of_both_shapes() {
 #[test]
 fn finishes_without_diffuse_light_and_highlights_show_no_lights() {
     let body = Color::gray(0.5);
-    assert!(!dull().shows_lights(body));
+    assert_eq!(dull().lights_shown(body), LightsShown::Nothing);
     let with = |change: fn(&mut PovFinish)| {
         let mut finish = dull();
         change(&mut finish);
         finish
     };
-    assert!(with(|f| f.phong = 0.1).shows_lights(Color::BLACK));
-    assert!(with(|f| f.specular = 0.1).shows_lights(Color::BLACK));
-    assert!(with(|f| f.diffuse_back = 0.1).shows_lights(body));
+    assert_eq!(
+        with(|f| f.phong = 0.1).lights_shown(Color::BLACK),
+        LightsShown::Highlights
+    );
+    assert_eq!(
+        with(|f| f.specular = 0.1).lights_shown(Color::BLACK),
+        LightsShown::Highlights
+    );
+    assert_eq!(
+        with(|f| f.diffuse_back = 0.1).lights_shown(body),
+        LightsShown::All
+    );
     // What is clear scatters nothing, except for its grain.
-    assert!(with(|f| f.diffuse = 0.1).shows_lights(body));
-    assert!(!with(|f| f.diffuse = 0.1).shows_lights(Color::BLACK));
+    assert_eq!(
+        with(|f| f.diffuse = 0.1).lights_shown(body),
+        LightsShown::All
+    );
+    assert_eq!(
+        with(|f| f.diffuse = 0.1).lights_shown(Color::BLACK),
+        LightsShown::Nothing
+    );
     let grainy = with(|f| (f.diffuse, f.crand) = (0.1, 0.1));
-    assert!(grainy.shows_lights(Color::BLACK));
+    assert_eq!(grainy.lights_shown(Color::BLACK), LightsShown::All);
 }
 
 #[test]
