@@ -10,7 +10,11 @@ fn parse_pair(s: &str, separator: char) -> Option<(u32, u32)> {
 }
 
 pub(super) fn parse_size(s: &str) -> Result<(u32, u32), String> {
-    parse_pair(s, 'x').ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 1280x720".to_owned())
+    match parse_pair(s, 'x') {
+        None => Err("expected WIDTHxHEIGHT in pixels, such as 1280x720".to_owned()),
+        Some((0, _) | (_, 0)) => Err("width and height must be at least 1".to_owned()),
+        Some(size) => Ok(size),
+    }
 }
 
 pub(super) fn parse_pixel(s: &str) -> Result<(u32, u32), String> {
@@ -131,6 +135,8 @@ mod tests {
         assert!(
             parse_region("100,50").is_err()
                 && parse_size("12").is_err()
+                && parse_size("0x10").is_err()
+                && parse_size("10x0").is_err()
                 && parse_pixel("1x2").is_err()
         );
         assert!(
