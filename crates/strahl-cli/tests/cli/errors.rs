@@ -117,8 +117,8 @@ fn bad_input_gives_one_clear_error() {
     fails(
         f,
         &["render", "scene.nff", "-o", "x.png", "--size", "0x10"],
-        1,
-        &["0 x 10"],
+        2,
+        &["--size", "at least 1"],
     );
     for (option, tip) in [
         ("--width", "--size 640x480"),
