@@ -83,7 +83,7 @@ impl PrimaryRays {
     #[inline(always)]
     fn chief<const UNIT: bool>(&self, x: f64, y: f64) -> Option<Ray> {
         let c = &self.camera;
-        if c.normal.is_some() || !matches!(c.projection, Projection::Perspective) {
+        if self.is_special() {
             let mut ray = [DVec3::ZERO; 2];
             let [origin, direction] = &mut ray;
             return self
@@ -99,6 +99,12 @@ impl PrimaryRays {
                 false => direction,
             },
         ))
+    }
+
+    /// Whether the camera isn't perspective or has a `normal`.
+    #[inline(always)]
+    fn is_special(&self) -> bool {
+        self.camera.normal.is_some() || !matches!(self.camera.projection, Projection::Perspective)
     }
 
     /// A position in the picture as coordinates from -1 to 1, the first to the right and the second upwards.

@@ -5,7 +5,6 @@ use crate::film::Region;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{DVec3, Ray};
-use strahl_scene::Projection;
 use strahl_simd::{Simd, dispatch};
 
 impl PrimaryRays {
@@ -18,7 +17,7 @@ impl PrimaryRays {
     ) -> ArrayVec<Option<Ray>, PACKET> {
         let c = &self.camera;
         let mut rays = ArrayVec::new();
-        let special = c.normal.is_some() || !matches!(c.projection, Projection::Perspective);
+        let special = self.is_special();
         let (mut x, mut y, mut count) = ([0.0; PACKET], [0.0; PACKET], 0);
         for row in square.y..square.y + square.height {
             for column in square.x..square.x + square.width {
