@@ -185,6 +185,28 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn transpose(self, rows: [Self::F64x4; 4]) -> [Self::F64x4; 4];
 }
 
+/// The values of `yes` in these lanes, given as bits, else those of `no`.
+#[inline(always)]
+pub fn select<I: Isa>(isa: I, lanes: u32, yes: I::F64x4, no: I::F64x4) -> I::F64x4 {
+    let chosen = isa.load(&CHOSEN[(lanes & 0b1111) as usize]);
+    isa.choose_le(isa.splat(1.0), chosen, yes, no)
+}
+
+/// Ones in the lanes of a number's bits.
+const CHOSEN: [[f64; 4]; 16] = {
+    let mut all = [[0.0; 4]; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let mut lane = 0;
+        while lane < 4 {
+            all[bits][lane] = (bits >> lane & 1) as f64;
+            lane += 1;
+        }
+        bits += 1;
+    }
+    all
+};
+
 /// Evaluates an expression with the proof of a level, inside of [`Isa::call`].
 ///
 /// `dispatch!(simd, isa => expression)` takes a [`Simd`] and binds `isa` to the [`Isa`] in it.

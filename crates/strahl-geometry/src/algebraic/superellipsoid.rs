@@ -1,7 +1,7 @@
 use super::event::{self, Event, Question};
 use super::gauge::{Gauge, GaugeLine};
 use crate::blocks::LANES;
-use crate::blocks::convex::{FourLines, FourRays, FourSpans, load, scaled, select};
+use crate::blocks::convex::{FourLines, FourRays, FourSpans, load, scaled};
 use crate::primitives::{check_positive, point_error};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
@@ -9,7 +9,7 @@ use crate::{
 use std::ops::ControlFlow;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
-use strahl_simd::Isa;
+use strahl_simd::{Isa, select};
 
 /// A superquadric ellipsoid about the origin: `(|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) <= 1`.
 ///

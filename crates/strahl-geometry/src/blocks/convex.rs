@@ -4,6 +4,7 @@
 
 use super::LANES;
 use crate::primitives::convex::{End, Span};
+use crate::swept::{FourFirstHits, FourHits};
 use crate::{PrimHit, Shape};
 use strahl_accel::PACKET;
 use strahl_math::{Aabb, DMat3, DVec3, Interval, Ray, Transform};
@@ -140,28 +141,6 @@ fn row<I: Isa>(isa: I, [a, b, c]: [f64; 3], x: I::F64x4, y: I::F64x4, z: I::F64x
     isa.add(xy, isa.mul(isa.splat(c), z))
 }
 
-/// The values of `yes` in these lanes, as bits, else those of `no`.
-#[inline(always)]
-pub(crate) fn select<I: Isa>(isa: I, lanes: u32, yes: I::F64x4, no: I::F64x4) -> I::F64x4 {
-    let chosen = isa.load(&CHOSEN[(lanes & 0b1111) as usize]);
-    isa.choose_le(isa.splat(1.0), chosen, yes, no)
-}
-
-/// Ones in the lanes of a number's bits.
-const CHOSEN: [[f64; LANES]; 16] = {
-    let mut all = [[0.0; LANES]; 16];
-    let mut bits = 0;
-    while bits < 16 {
-        let mut lane = 0;
-        while lane < LANES {
-            all[bits][lane] = (bits >> lane & 1) as f64;
-            lane += 1;
-        }
-        bits += 1;
-    }
-    all
-};
-
 /// Four rays, coordinate by coordinate.
 pub(crate) struct FourRays<I: Isa> {
     pub(crate) origin: [I::F64x4; 3],
@@ -266,9 +245,37 @@ pub(crate) trait FourLines {
     }
 }
 
-/// Where the rays of a packet are inside of a convex solid.
+/// A search for the rays of a packet that don't start on the shape.
+#[derive(Clone, Copy, Debug)]
+pub struct PacketSearch<'a> {
+    /// The rays of the packet.
+    pub rays: &'a PacketRays,
+    /// The map to the shape's space.
+    pub map: Option<&'a Transform>,
+    /// The rays that ask, as bits.
+    pub lanes: u32,
+    /// Where the ranges of all rays begin.
+    pub min: f64,
+    /// Where that of each ray ends.
+    pub t_max: &'a [f64; PACKET],
+}
+
+impl PacketSearch<'_> {
+    /// The rays of a group that ask.
+    #[inline(always)]
+    const fn wanted(&self, group: usize) -> u32 {
+        self.lanes >> (group * LANES) & 0b1111
+    }
+}
+
+/// Where the rays of a packet are inside of a convex solid, or where they first meet a swept one.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct PacketSpans([FourSpans; GROUPS]);
+pub struct PacketSpans {
+    spans: [FourSpans; GROUPS],
+    hits: [FourHits; GROUPS],
+    /// Where the search for the hits begins.
+    min: f64,
+}
 
 impl PacketSpans {
     /// Whether there is such a search for a shape: for spheres, boxes, cylinders, cones, quadrics, convex superellipsoids and small intersections of convex solids.
@@ -286,58 +293,70 @@ impl PacketSpans {
         }
     }
 
-    /// Finds the spans of those of the rays `lanes`, as bits, which don't start on the shape, in the space to which a map leads. Of shapes without
-    /// such a search nothing is known.
-    pub fn find(&mut self, shape: &Shape, rays: &PacketRays, map: Option<&Transform>, lanes: u32) {
-        self.find_at(Simd::best(), shape, rays, map, lanes);
+    /// Whether there is a search for the first hits with a shape: for those that [`know`](Self::know) names, prisms and letters.
+    #[inline]
+    pub fn know_first(shape: &Shape) -> bool {
+        matches!(shape, Shape::Prism(_) | Shape::Glyph(_)) || Self::know(shape)
+    }
+
+    /// Finds the spans, or the first hits in the search's ranges. Of shapes without such a search nothing is known.
+    pub fn find(&mut self, shape: &Shape, search: &PacketSearch<'_>) {
+        self.find_at(Simd::best(), shape, search);
     }
 
     #[inline(always)]
-    pub(crate) fn find_at(
-        &mut self,
-        simd: Simd,
-        shape: &Shape,
-        rays: &PacketRays,
-        map: Option<&Transform>,
-        lanes: u32,
-    ) {
+    pub(crate) fn find_at(&mut self, simd: Simd, shape: &Shape, search: &PacketSearch<'_>) {
+        self.min = search.min;
         match shape {
-            Shape::Sphere(solid) => self.find_of(simd, solid, rays, map, lanes),
-            Shape::Cuboid(solid) => self.find_of(simd, solid, rays, map, lanes),
-            Shape::Cylinder(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
-            Shape::Cone(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
-            Shape::Quadric(solid) => self.find_of(simd, &**solid, rays, map, lanes),
-            Shape::Superellipsoid(body) if body.is_convex() => {
-                self.find_of(simd, body, rays, map, lanes);
-            }
-            Shape::Csg(tree) => self.find_of(simd, &**tree, rays, map, lanes),
-            _ => self.0 = Default::default(),
+            Shape::Sphere(solid) => self.find_of(simd, solid, search),
+            Shape::Cuboid(solid) => self.find_of(simd, solid, search),
+            Shape::Cylinder(solid) => self.find_of(simd, solid.frustum(), search),
+            Shape::Cone(solid) => self.find_of(simd, solid.frustum(), search),
+            Shape::Quadric(solid) => self.find_of(simd, &**solid, search),
+            Shape::Superellipsoid(body) if body.is_convex() => self.find_of(simd, body, search),
+            Shape::Csg(tree) => self.find_of(simd, &**tree, search),
+            Shape::Prism(solid) => self.find_first(simd, &**solid, search),
+            Shape::Glyph(solid) => self.find_first(simd, solid, search),
+            _ => self.spans = Default::default(),
         }
     }
 
     #[inline(always)]
-    fn find_of(
-        &mut self,
-        simd: Simd,
-        solid: &impl FourLines,
-        rays: &PacketRays,
-        map: Option<&Transform>,
-        lanes: u32,
-    ) {
+    fn find_of(&mut self, simd: Simd, solid: &impl FourLines, search: &PacketSearch<'_>) {
         dispatch!(simd, isa => {
             for group in 0..GROUPS {
-                if lanes >> (group * LANES) & 0b1111 != 0 {
-                    self.0[group] = solid.spans(isa, &rays.four(isa, group, map));
+                if search.wanted(group) != 0 {
+                    let rays = search.rays.four(isa, group, search.map);
+                    self.spans[group] = solid.spans(isa, &rays);
                 }
             }
         });
     }
 
-    /// The first hit of a ray on the shape in a range, as [`Primitive::closest_hit`](crate::Primitive::closest_hit) finds it; `None` if only that
+    #[inline(always)]
+    fn find_first(&mut self, simd: Simd, solid: &impl FourFirstHits, search: &PacketSearch<'_>) {
+        let PacketSearch { min, map, .. } = *search;
+        dispatch!(simd, isa => {
+            for (group, t_max) in search.t_max.as_chunks::<LANES>().0.iter().enumerate() {
+                let wanted = search.wanted(group);
+                if wanted != 0 {
+                    let (rays, max) = (search.rays.four(isa, group, map), isa.load(t_max));
+                    self.hits[group] = solid.first_hits(isa, rays, wanted, min, max);
+                }
+            }
+        });
+    }
+
+    /// The first hit of a ray on the shape in a range that begins where the search did and does not reach further, as [`Primitive::closest_hit`](crate::Primitive::closest_hit) finds it; `None` if only that
     /// function knows.
     #[inline]
     pub fn closest(&self, shape: &Shape, lane: usize, range: Interval) -> Option<Option<PrimHit>> {
-        let (spans, lane) = (&self.0[lane / LANES % GROUPS], lane % LANES);
+        let (group, lane) = (lane / LANES % GROUPS, lane % LANES);
+        if let Shape::Prism(_) | Shape::Glyph(_) = shape {
+            let known = range.min.to_bits() == self.min.to_bits();
+            return self.hits[group].closest(lane, range).filter(|_| known);
+        }
+        let spans = &self.spans[group];
         let only_enter = spans.only_enter >> lane & 1 == 1;
         if spans.known >> lane & 1 == 0 && !only_enter {
             return None;
@@ -391,7 +410,12 @@ impl PacketSpans {
 mod tests {
     use super::*;
     use crate::conformance::Random;
-    use crate::{Cone, Cuboid, Cylinder, Primitive, Quadric, Scratch, Sphere, Superellipsoid};
+    use crate::{
+        Cone, Cuboid, Cylinder, Glyph, OutlineBuilder, Primitive, Prism, PrismSweep, Quadric,
+        Scratch, Sphere, Spline, Superellipsoid,
+    };
+    use std::sync::Arc;
+    use strahl_math::DVec2;
 
     /// Rays at a solid: from everywhere, at its rims, along its axes, and some that are no numbers.
     fn rays(random: &mut Random, center: DVec3) -> Vec<Ray> {
@@ -463,9 +487,76 @@ mod tests {
         assert!(met > 1000 && missed > 1000, "{met} {missed}");
     }
 
+    /// Prisms over all kinds of curves, and a letter with a hole.
+    fn swept(random: &mut Random, center: DVec3) -> Vec<Shape> {
+        let point = |x: f64, y: f64| DVec2::new(x + center.x, y + center.z);
+        let closed =
+            |list: &[[f64; 2]]| -> Vec<DVec2> { list.iter().map(|&[x, y]| point(x, y)).collect() };
+        let mut star: Vec<[f64; 2]> = (0..30)
+            .map(|k| {
+                let (sin, cos) = (f64::from(k) * 0.21).sin_cos();
+                let radius = 0.3 + 0.7 * random.unit();
+                [radius * cos, radius * sin]
+            })
+            .collect();
+        star.push(star[0]);
+        let clover = [
+            [-1.0, 0.5],
+            [0.0, -1.0],
+            [1.2, 0.1],
+            [0.1, 0.3],
+            [0.3, 1.1],
+            [-1.0, 0.5],
+            [0.0, -1.0],
+            [1.2, 0.1],
+        ];
+        let leaf = [
+            [0.0, -1.0],
+            [1.5, -0.9],
+            [1.1, 0.8],
+            [0.0, 1.0],
+            [0.0, 1.0],
+            [-0.2, 0.2],
+            [-1.5, -0.2],
+            [0.0, -1.0],
+        ];
+        let heights = [random.unit() - 0.5, 0.5 + random.unit()];
+        let mut shapes = vec![];
+        for (spline, list) in [
+            (Spline::Linear, &star[..]),
+            (Spline::Quadratic, &clover[..7]),
+            (Spline::Cubic, &clover),
+            (Spline::Bezier, &leaf),
+        ] {
+            for (sweep, open) in [
+                (PrismSweep::Linear, false),
+                (PrismSweep::Conic, false),
+                (PrismSweep::Linear, true),
+            ] {
+                let prism = Prism::try_new(spline, sweep, heights, &closed(list), open);
+                shapes.push(prism.unwrap().into());
+            }
+        }
+        let mut outline = OutlineBuilder::default();
+        for size in [1.0, 0.5] {
+            outline.move_to(DVec2::new(0.0, -size));
+            outline.line_to(DVec2::new(size, -size));
+            outline.quadratic_to(DVec2::new(size, size), DVec2::new(0.0, size));
+            outline.cubic_to(
+                DVec2::new(-size, size),
+                DVec2::new(0.0, 0.0),
+                DVec2::new(-size, -size),
+            );
+        }
+        let outline = Arc::new(outline.finish().unwrap());
+        shapes.push(Glyph::try_new(outline, center, -0.3).unwrap().into());
+        shapes
+    }
+
     #[test]
     fn packets_hit_what_single_rays_hit() {
         let mut random = Random::new(5);
+        let mut first_hits = (0, 0, 0);
         let (mut known, mut met) = (0, 0);
         for round in 0..4000 {
             let center = DVec3::new(random.unit(), random.unit(), random.unit());
@@ -494,16 +585,34 @@ mod tests {
                 _ => Interval::LINE,
             };
             let levels = Simd::available();
+            let swept = match round % 8 {
+                0 | 5 | 7 => swept(&mut random, center),
+                _ => vec![],
+            };
             for (shape, simd) in shapes
                 .iter()
+                .chain(&swept)
                 .flat_map(|s| levels.iter().map(move |l| (s, l)))
             {
                 let mut spans = PacketSpans::default();
-                spans.find_at(*simd, shape, &packet, map, 0xffff);
+                let search = PacketSearch {
+                    rays: &packet,
+                    map,
+                    lanes: 0xffff,
+                    min: range.min,
+                    t_max: &[range.max; PACKET],
+                };
+                spans.find_at(*simd, shape, &search);
                 for (lane, ray) in rays.iter().enumerate() {
                     let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
                     let alone = shape.closest_hit(&inner, range, None, &mut Scratch::default());
-                    if let Some(together) = spans.closest(shape, lane, range) {
+                    let together = spans.closest(shape, lane, range);
+                    if matches!(shape, Shape::Prism(_) | Shape::Glyph(_)) {
+                        first_hits.0 += 1;
+                        first_hits.1 += u32::from(together.is_some());
+                        first_hits.2 += u32::from(together.is_some_and(|hit| hit.is_some()));
+                    }
+                    if let Some(together) = together {
                         assert_eq!(together, alone, "{shape:?} {ray:?} {range:?}");
                         known += 1;
                         met += u32::from(alone.is_some());
@@ -512,5 +621,11 @@ mod tests {
             }
         }
         assert!(known > 220_000 && met > 60_000, "{known} {met}");
+        let (asked, known, met) = first_hits;
+        // Nothing is known of a third of the ranges, which begin at negative parameters.
+        assert!(
+            2 * known > asked && 8 * met > asked,
+            "{asked} {known} {met}"
+        );
     }
 }

@@ -10,7 +10,7 @@ mod polygons;
 mod spheres;
 mod triangles;
 
-pub use convex::{PacketRays, PacketSpans};
+pub use convex::{PacketRays, PacketSearch, PacketSpans};
 pub use packet::{PacketLines, PacketShears};
 pub use polygons::{PlaneHits, PolygonBlock};
 pub use spheres::SphereBlock;

@@ -9,11 +9,11 @@ use super::fusing::FourFusing;
 use super::states::MOST;
 use crate::PrimHit;
 use crate::blocks::LANES;
-use crate::blocks::convex::{FourLines, FourRays, FourSpans, select};
+use crate::blocks::convex::{FourLines, FourRays, FourSpans};
 use crate::primitives::convex::Span;
 use arrayvec::ArrayVec;
 use strahl_math::Interval;
-use strahl_simd::Isa;
+use strahl_simd::{Isa, select};
 
 impl Csg {
     /// Whether lines find their spans in the tree four at a time.
@@ -309,7 +309,7 @@ impl<I: Isa> Ends<I> {
 pub(super) mod tests {
     use super::super::CsgNode;
     use super::*;
-    use crate::blocks::{PacketRays, PacketSpans};
+    use crate::blocks::{PacketRays, PacketSearch, PacketSpans};
     use crate::conformance::Random;
     use crate::{Cone, Cuboid, Cylinder, Plane, Primitive, Quadric, Scratch, Shape, Sphere};
     use std::sync::Arc;
@@ -402,7 +402,14 @@ pub(super) mod tests {
             };
             for simd in &levels {
                 let mut spans = PacketSpans::default();
-                spans.find_at(*simd, &shape, &packet, map, 0xffff);
+                let search = PacketSearch {
+                    rays: &packet,
+                    map,
+                    lanes: 0xffff,
+                    min: range.min,
+                    t_max: &[range.max; PACKET],
+                };
+                spans.find_at(*simd, &shape, &search);
                 for (lane, ray) in rays.iter().enumerate() {
                     let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
                     let alone = shape.closest_hit(&inner, range, None, &mut Scratch::default());

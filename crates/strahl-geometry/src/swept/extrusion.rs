@@ -6,11 +6,11 @@ use std::cmp::Ordering;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// The facet of the cap at the lower height.
-const LOW_CAP: u32 = 0;
+pub(super) const LOW_CAP: u32 = 0;
 /// The facet of the cap at the upper height.
-const HIGH_CAP: u32 = 1;
+pub(super) const HIGH_CAP: u32 = 1;
 /// The facet of the first piece's wall.
-const FIRST_WALL: u32 = 2;
+pub(super) const FIRST_WALL: u32 = 2;
 
 /// An outline swept along the z axis from one height to another, for rays in its own space.
 ///
@@ -47,7 +47,7 @@ impl Extrusion<'_> {
 
     /// The side of the curve that is outside where a ray crosses a wall: 1 for the right, -1 for the left. At this point
     /// `hit.uv[1]` still says whether the curve passes to the left of the ray (1) or to the right (-1).
-    fn outer_side(&self, ray: &Ray, hit: &PrimHit, enters: bool) -> f64 {
+    pub(super) fn outer_side(&self, ray: &Ray, hit: &PrimHit, enters: bool) -> f64 {
         let [s, rises] = hit.uv;
         if !self.conic {
             // The right side of a curve that gets to the left is in front.
@@ -355,7 +355,7 @@ impl WholeLine for Extrusion<'_> {
 
 /// The crossings of a line with walls, as far as the first hit needs them.
 #[derive(Default)]
-struct Walls {
+pub(super) struct Walls {
     any: bool,
     /// Whether an odd number lies before the apex.
     within: bool,

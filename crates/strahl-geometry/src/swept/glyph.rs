@@ -1,6 +1,8 @@
 use super::extrusion::Extrusion;
+use super::four_rays::{FourFirstHits, FourHits};
 use super::outline::Outline;
 use super::spans::WholeLine;
+use crate::blocks::convex::{FourRays, sub};
 use crate::primitive::hits_of_solid;
 use crate::primitives::check_finite;
 use crate::{
@@ -8,6 +10,7 @@ use crate::{
 };
 use std::sync::Arc;
 use strahl_math::{Aabb, DMat3, DVec3, Interval, Ray, Transform};
+use strahl_simd::Isa;
 
 /// A letter: an outline in the x-y plane, moved to its position and swept from there along the z axis.
 ///
@@ -61,6 +64,25 @@ impl Glyph {
 
     fn local(&self, ray: &Ray) -> Ray {
         Ray::new(ray.origin - self.origin, ray.direction)
+    }
+}
+
+/// See [`Extrusion::first_hits`].
+impl FourFirstHits for Glyph {
+    #[inline(always)]
+    fn first_hits<I: Isa>(
+        &self,
+        isa: I,
+        FourRays { origin, direction }: FourRays<I>,
+        wanted: u32,
+        min: f64,
+        max: I::F64x4,
+    ) -> FourHits {
+        let local = FourRays {
+            origin: sub(isa, origin, self.origin.to_array().map(|x| isa.splat(x))),
+            direction,
+        };
+        self.extrusion().first_hits(isa, local, wanted, min, max)
     }
 }
 

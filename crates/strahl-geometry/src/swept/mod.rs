@@ -5,6 +5,7 @@
 
 mod curve;
 mod extrusion;
+mod four_rays;
 mod glyph;
 mod hyperbola;
 mod lathe;
@@ -23,6 +24,7 @@ mod turned;
 mod zoom_tests;
 
 pub use curve::Spline;
+pub(crate) use four_rays::{FourFirstHits, FourHits};
 pub use glyph::Glyph;
 pub use lathe::Lathe;
 pub use outline::{Outline, OutlineBuilder};

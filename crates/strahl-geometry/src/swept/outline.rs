@@ -270,6 +270,23 @@ impl Outline {
         self.smooth.get(piece as usize).copied().unwrap_or(piece)
     }
 
+    /// Visits the pieces of all leaves whose boxes pass a test, in their order and with the number of the first.
+    #[inline(always)]
+    pub(super) fn visit_leaves(
+        &self,
+        test: impl FnMut(&Rect) -> bool,
+        mut visit: impl FnMut(usize, &[Piece<DVec2>]),
+    ) {
+        self.runs.visit_leaves(
+            test,
+            #[inline(always)]
+            |leaf| {
+                let first = leaf.start;
+                visit(first, self.pieces.get(leaf).unwrap_or_default());
+            },
+        );
+    }
+
     /// Visits all crossings with a line, piece by piece.
     ///
     /// The side of a joint is decided by the same operations for both pieces that meet there; so a line crosses a contour an even number of
@@ -331,7 +348,7 @@ impl Outline {
 }
 
 /// A polynomial in Bernstein form with a way to find the root of one that has opposite signs at 0 and 1, and no other root.
-trait SingleRoot {
+pub(super) trait SingleRoot {
     fn single_root(&self, rising: bool) -> f64;
 }
 
@@ -399,6 +416,12 @@ where
         found(values.single_root(rising), rising);
         return;
     }
+    if let [a, b, c] = values[..]
+        && changes == 2
+        && keep_apart([a, b, c].map(f64::abs), error)
+    {
+        return;
+    }
     let polynomial = Bernstein::new(values, error, 0.0, 1.0);
     let _ = polynomial.isolate(&mut |part| {
         if part.count != RootCount::Even {
@@ -406,6 +429,14 @@ where
         }
         ControlFlow::Continue(())
     });
+}
+
+/// Whether a parabola has no root although its middle control point lies on the other side than both ends, given their distances and their error.
+#[inline]
+fn keep_apart([a, b, c]: [f64; 3], error: f64) -> bool {
+    let (a, b, c) = (a - error, b + error, c - error);
+    // With room for the roundings of the products.
+    a > 0.0 && c > 0.0 && b * b < a * c * (1.0 - gamma(8))
 }
 
 /// Two pieces belong to one smooth run if the sine of the angle between them is less: 2⁻²⁰, some hundred times the error of a

@@ -1,12 +1,15 @@
 use super::curve::Spline;
 use super::extrusion::Extrusion;
+use super::four_rays::{FourFirstHits, FourHits};
 use super::outline::{Outline, OutlineBuilder};
 use super::spans::WholeLine;
+use crate::blocks::convex::FourRays;
 use crate::primitive::hits_of_solid;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+use strahl_simd::Isa;
 
 /// A point as near as this to the first one of a prism's curve or a polygon's ring, along each axis, closes it, as in POV-Ray (measured).
 pub const CLOSING_DISTANCE: f64 = 1e-10;
@@ -109,6 +112,26 @@ impl Prism {
             high: self.high,
             capped: !self.open,
         }
+    }
+}
+
+/// See [`Extrusion::first_hits`].
+impl FourFirstHits for Prism {
+    #[inline(always)]
+    fn first_hits<I: Isa>(
+        &self,
+        isa: I,
+        FourRays { origin, direction }: FourRays<I>,
+        wanted: u32,
+        min: f64,
+        max: I::F64x4,
+    ) -> FourHits {
+        let [[ox, oy, oz], [dx, dy, dz]] = [origin, direction];
+        let turned = FourRays {
+            origin: [ox, oz, oy],
+            direction: [dx, dz, dy],
+        };
+        self.extrusion().first_hits(isa, turned, wanted, min, max)
     }
 }
 

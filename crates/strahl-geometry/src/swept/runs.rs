@@ -73,7 +73,7 @@ impl Runs {
     }
 
     /// Visits the leaves whose boxes pass the test, in order, each as its pieces.
-    #[inline]
+    #[inline(always)]
     pub(super) fn visit_leaves(
         &self,
         mut test: impl FnMut(&Rect) -> bool,

@@ -7,7 +7,7 @@ use crate::activity::Phase;
 use crate::hit::Hit;
 use crate::uses::EarlyBox;
 use strahl_accel::{PACKET, lanes_of};
-use strahl_geometry::blocks::{PacketRays, PacketSpans};
+use strahl_geometry::blocks::{PacketRays, PacketSearch, PacketSpans};
 use strahl_geometry::{Csg, PacketRanges, PrimHit, Primitive, Scratch, Shape, SurfaceId};
 use strahl_math::{Interval, Ray};
 
@@ -38,7 +38,13 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
                 self.shared.slot.enter(Phase::Traversal);
                 return;
             }
-            (shape, _) => PacketSpans::know(shape) && are_dense(lanes & !self.lanes_from(id)),
+            (shape, _) => {
+                let known = match Q::ALL {
+                    true => PacketSpans::know(shape),
+                    false => PacketSpans::know_first(shape),
+                };
+                known && are_dense(lanes & !self.lanes_from(id))
+            }
         };
         if Q::ALL {
             self.meet_all(id, &shape, side_by_side, lanes, t_max);
@@ -180,14 +186,27 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         self.shared.scratch.give_hits(found);
     }
 
-    /// Finds where those of several rays that don't start on a shape are inside of it, four side by side.
-    fn find_spans(&mut self, id: u32, shape: &UnfilteredShape<'_>, lanes: u32) {
+    /// Finds where those of several rays that don't start on a shape are inside of it or first meet it, four side by side.
+    fn find_spans(
+        &mut self,
+        id: u32,
+        shape: &UnfilteredShape<'_>,
+        lanes: u32,
+        t_max: &[f64; PACKET],
+    ) {
         let elsewhere = lanes & !self.lanes_from(id);
         self.find_coordinates();
         let PacketMemory {
             spans, coordinates, ..
         } = &mut *self.shared.memory;
-        spans.find(shape.shape, coordinates, shape.transform, elsewhere);
+        let search = PacketSearch {
+            rays: coordinates,
+            map: shape.transform,
+            lanes: elsewhere,
+            min: self.asked.min,
+            t_max,
+        };
+        spans.find(shape.shape, &search);
     }
 
     /// Takes all hits of several rays on a shape, found four `side_by_side` or one by one.
@@ -200,7 +219,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         t_max: &mut [f64; PACKET],
     ) {
         if side_by_side {
-            self.find_spans(id, shape, lanes);
+            self.find_spans(id, shape, lanes, t_max);
         }
         let mut found = self.shared.scratch.take_hits();
         for lane in lanes_of(lanes) {
@@ -236,7 +255,7 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
         lanes: u32,
         t_max: &mut [f64; PACKET],
     ) {
-        self.find_spans(id, shape, lanes);
+        self.find_spans(id, shape, lanes, t_max);
         for lane in lanes_of(lanes) {
             let before = t_max[lane];
             if !(before > f64::NEG_INFINITY) {
